@@ -1,0 +1,25 @@
+// Group 0, the only one: two uniforms and the eight storage buffers that WebGPU guarantees.
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> dispatch: Dispatch;
+@group(0) @binding(2) var<storage, read> nodes: array<Node>;
+@group(0) @binding(3) var<storage, read> instances: array<Instance>;
+@group(0) @binding(4) var<storage, read> triangles: array<Triangle>;
+@group(0) @binding(5) var<storage, read> materials: array<Material>;
+@group(0) @binding(6) var<storage, read> lights: array<Light>;
+@group(0) @binding(7) var<storage, read> texels: array<u32>;
+@group(0) @binding(8) var<storage, read_write> film: array<FilmPixel>;
+@group(0) @binding(9) var<storage, read_write> status: Status;
+
+// What a scene does not use is compiled out: `FeatureSet` in src/flatten/features.rs sets these.
+override HAS_SPHERE: bool = true;
+override HAS_CUBE: bool = true;
+override HAS_CYLINDER: bool = true;
+override HAS_CONE: bool = true;
+override HAS_TORUS: bool = true;
+override HAS_PLANE: bool = true;
+override HAS_MESH: bool = true;
+override HAS_REFLECTION: bool = true;
+override HAS_REFRACTION: bool = true;
+override HAS_GLOSSY: bool = true;
+override HAS_AREA_LIGHT: bool = true;
+override HAS_LENS: bool = true;

@@ -1,0 +1,8 @@
+//! The reference renderer: one file for each `.wgsl` file, with the same functions under the same names.
+
+pub mod bindings;
+pub mod camera;
+pub mod geometry;
+pub mod math;
+pub mod path;
+pub mod shading;

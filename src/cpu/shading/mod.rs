@@ -1,0 +1,4 @@
+//! Light and surfaces.
+
+pub mod light;
+pub mod material;

@@ -1,0 +1,1 @@
+//! All tests in one program: one link, and one start of the Vulkan driver.
