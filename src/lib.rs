@@ -1,4 +1,5 @@
 pub mod cpu;
+pub mod device;
 pub mod error;
 pub mod film;
 pub mod flatten;

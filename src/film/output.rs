@@ -39,13 +39,13 @@ impl OutputFormat {
     pub fn from_path(path: &Path) -> Result<Self> {
         let extension = path.extension().unwrap_or_default();
         let format = Self::ALL.iter().find(|format| extension.eq_ignore_ascii_case(format.extension()));
-        format.copied().ok_or_else(|| {
-            let supported: Vec<String> = Self::ALL.iter().map(|format| format!(".{}", format.extension())).collect();
-            Error::Format {
-                path: path.to_owned(),
-                message: format!("a picture's name must end in {}", supported.join(" or ")),
-            }
-        })
+        format.copied().ok_or_else(|| Error::Format { path: path.to_owned(), message: Self::expected() })
+    }
+
+    /// What the names of pictures end in, for messages.
+    pub fn expected() -> String {
+        let supported: Vec<String> = Self::ALL.iter().map(|format| format!(".{}", format.extension())).collect();
+        format!("the name of a picture must end in {}", supported.join(" or "))
     }
 
     /// Writes the picture; an existing one is replaced only when the new one is complete, and missing folders are
