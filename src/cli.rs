@@ -6,6 +6,7 @@ mod console;
 mod doctor;
 mod interrupt;
 mod progress;
+mod reference;
 mod render;
 mod report;
 
@@ -13,7 +14,7 @@ use args::{Arguments, Command};
 use clap::Parser;
 use clap::error::ErrorKind;
 use console::Console;
-use gpu_trace::{Error, Result};
+use gpu_trace::Error;
 use std::io::Write;
 use std::process::ExitCode;
 

@@ -1,9 +1,9 @@
 //! Which renderer a picture is made with, and why that one.
 
+use crate::Result;
 use crate::cpu::CpuRenderer;
-use crate::gpu::{Device, DeviceKind, DeviceSelector, GpuOptions, GpuRenderer};
+use crate::gpu::{Description, Device, DeviceKind, DeviceSelector, GpuOptions, GpuRenderer};
 use crate::renderer::Renderer;
-use crate::{Error, Result};
 use std::convert::Infallible;
 use std::fmt;
 use std::str::FromStr;
@@ -48,17 +48,36 @@ pub struct DeviceInfo {
     pub why: String,
 }
 
+impl DeviceInfo {
+    /// A device of the GPU renderer.
+    pub fn new(description: &Description, why: String) -> Self {
+        let kind = match description.kind {
+            DeviceKind::Discrete => "discrete GPU",
+            DeviceKind::Integrated => "integrated GPU",
+            DeviceKind::Virtual => "virtual GPU",
+            DeviceKind::Unknown => "GPU",
+            DeviceKind::Software => "software Vulkan",
+        };
+        let driver = [description.backend, &description.driver, &description.driver_version];
+        DeviceInfo {
+            name: description.name.clone(),
+            kind,
+            driver: driver.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
+            why,
+        }
+    }
+}
+
 impl fmt::Display for DeviceInfo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} ({}, {})", self.name, self.kind, self.driver)
     }
 }
 
-/// Opens the device that was asked for. `checked` compiles the kernel with bounds checks wherever the language
-/// leaves them to the driver.
+/// Opens the device that was asked for. `checked` keeps bounds checks in the GPU's kernel; see [`GpuOptions`].
 ///
 /// # Errors
-/// [`Error::Device`] where no such device can be opened; with [`DeviceChoice::Auto`] never.
+/// [`Error::Device`](crate::Error::Device) where no such device can be opened; with [`DeviceChoice::Auto`] never.
 pub fn open_renderer(choice: &DeviceChoice, checked: bool) -> Result<(Box<dyn Renderer>, DeviceInfo)> {
     let (selector, why) = match choice {
         DeviceChoice::Auto => {
@@ -75,24 +94,16 @@ pub fn open_renderer(choice: &DeviceChoice, checked: bool) -> Result<(Box<dyn Re
 fn open_gpu(selector: &DeviceSelector, checked: bool, why: Option<String>) -> Result<(Box<dyn Renderer>, DeviceInfo)> {
     let device = Device::open(selector)?;
     let description = device.description();
-    let (kind, reason) = match description.kind {
-        DeviceKind::Discrete => ("discrete GPU", "the best GPU found"),
-        DeviceKind::Integrated => ("integrated GPU", "the best GPU found"),
-        DeviceKind::Virtual => ("virtual GPU", "the best GPU found"),
-        DeviceKind::Unknown => ("GPU", "the best GPU found"),
-        DeviceKind::Software => ("software Vulkan", "no hardware GPU was found"),
-    };
-    let driver = [description.backend, &description.driver, &description.driver_version];
-    let info = DeviceInfo {
-        name: description.name.clone(),
-        kind,
-        driver: driver.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
-        why: why.unwrap_or_else(|| reason.to_owned()),
-    };
+    let why = why.unwrap_or_else(|| match description.kind {
+        DeviceKind::Software => "no hardware GPU was found".to_owned(),
+        _ => "the best GPU found".to_owned(),
+    });
+    let info = DeviceInfo::new(description, why);
     Ok((Box::new(GpuRenderer::new(device, GpuOptions { checked })?), info))
 }
 
-fn open_cpu(why: String) -> (Box<dyn Renderer>, DeviceInfo) {
+/// The native CPU renderer, which needs no driver.
+pub fn open_cpu(why: String) -> (Box<dyn Renderer>, DeviceInfo) {
     let threads = rayon::current_num_threads();
     let info = DeviceInfo {
         name: "CPU".to_owned(),

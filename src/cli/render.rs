@@ -13,6 +13,7 @@ use gpu_trace::renderer::Renderer;
 use gpu_trace::scene::Scene;
 use gpu_trace::script::{ScriptOptions, run_scene};
 use gpu_trace::{Error, Result};
+use std::sync::Arc;
 
 /// # Errors
 /// Whatever keeps a picture from being written; [`Error::Scene`] where the script asks for none.
@@ -67,7 +68,7 @@ impl Session<'_> {
         if interrupt::requested() {
             return Err(Error::Interrupted);
         }
-        let buffers = flatten(&scene)?;
+        let buffers = Arc::new(flatten(&scene)?);
         let (renderer, info) = match &mut self.device {
             Some((renderer, info)) => (renderer, &*info),
             device @ None => {
@@ -77,9 +78,9 @@ impl Session<'_> {
                 (renderer, &*info)
             }
         };
-        let options = RenderOptions { samples: 0..scene.sampling.camera, ..RenderOptions::default() };
+        let options = RenderOptions::whole(&buffers);
         let mut bar = Bar::new(self.console);
-        let rendered = render(&buffers, renderer.as_mut(), &options, &mut bar)?;
+        let rendered = render(buffers, renderer.as_mut(), &options, &mut bar)?;
         drop(bar);
 
         format.write(&rendered.film, &scene.output, scene.transfer, scene.background.transparent)?;
