@@ -37,6 +37,7 @@
 //! ```
 
 pub mod cpu;
+pub mod device;
 pub mod error;
 pub mod film;
 pub mod flatten;
