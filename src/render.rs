@@ -192,7 +192,8 @@ impl Job<'_> {
     /// Runs every pass of every sample over the blocks of a band. Returns early with the flags when a bound is met.
     fn render_passes(&mut self, rows: &Range<u32>) -> Result<u32> {
         let band_rows = rows.end - rows.start;
-        let blocks = u64::from(self.frame.image_size.x.div_ceil(BLOCK_EDGE)) * u64::from(band_rows.div_ceil(BLOCK_EDGE));
+        let blocks =
+            u64::from(self.frame.image_size.x.div_ceil(BLOCK_EDGE)) * u64::from(band_rows.div_ceil(BLOCK_EDGE));
         let passes = u64::from(self.frame.pass_count);
         let samples = u64::from(self.options.samples.end - self.options.samples.start);
         let total = samples * passes * blocks;

@@ -144,8 +144,7 @@ pub fn spawn_rays(
         let mut first = ray.index;
         if ray.depth == 0 && material.glossy > 0.0 {
             count = scene.frame.glossy_samples;
-            first =
-                ray.index.wrapping_mul(scene.frame.pass_count).wrapping_add(pass_index).wrapping_mul(count);
+            first = ray.index.wrapping_mul(scene.frame.pass_count).wrapping_add(pass_index).wrapping_mul(count);
         }
         for i in 0..count {
             tally.rays[RAY_REFLECTED as usize] += 1;
