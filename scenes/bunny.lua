@@ -12,7 +12,7 @@ end
 
 -- The file is read once; each node of it may have a material of its own.
 local function bunny(material)
-  local node = gr.mesh('bunny', 'bunny.obj')
+  local node = gr.mesh('bunny', 'assets/bunny.obj')
   node:set_material(material)
   return node
 end

@@ -36,7 +36,7 @@ local shapes = {
   { octahedron, { 0.28, 0.42, 0.85 },
     function(n) n:scale(0.5, 0.5, 0.5); n:rotate('y', 20); n:translate(0, 0.5, 0) end,
     function(n) n:scale(0.8, 1.9, 0.8) end },
-  { gr.mesh('suzanne', 'suzanne.obj'), { 0.62, 0.36, 0.74 },
+  { gr.mesh('suzanne', 'assets/suzanne.obj'), { 0.62, 0.36, 0.74 },
     function(n) n:rotate('y', -20) end,
     function(n) n:scale(-1, 1.7, 1) end },
 }
