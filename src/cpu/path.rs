@@ -144,8 +144,7 @@ pub fn spawn_rays(
         let mut first = ray.index;
         if ray.depth == 0 && material.glossy > 0.0 {
             count = scene.frame.glossy_samples;
-            first =
-                ray.index.wrapping_mul(scene.frame.pass_count).wrapping_add(pass_index).wrapping_mul(count);
+            first = ray.index.wrapping_mul(scene.frame.pass_count).wrapping_add(pass_index).wrapping_mul(count);
         }
         for i in 0..count {
             tally.rays[RAY_REFLECTED as usize] += 1;
@@ -166,7 +165,7 @@ fn ray_radiance(scene: &Bindings, ray: &Ray, pass_index: u32, tally: &mut Tally)
         let transparent = ray.depth == 0 && scene.frame.flags & FRAME_TRANSPARENT != 0;
         return (!transparent).then(|| background(scene, ray.direction));
     }
-    let surface = surface_at(scene, &hit, ray.origin, ray.direction);
+    let surface = surface_at(scene, hit, ray.origin, ray.direction);
     let material = &scene.materials[surface.material as usize];
     let direct = direct_light(scene, &surface, material, -ray.direction, ray, pass_index, tally);
     let mut radiance = material.emission + scene.frame.ambient * material.diffuse + direct;
