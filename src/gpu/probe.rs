@@ -1,7 +1,7 @@
 //! What `gpu-trace doctor` finds out about devices.
 
 use super::buffers::create;
-use super::device::Device;
+use super::device::{Description, Device, DeviceSelector};
 use super::{pipeline, readback};
 use crate::Result;
 use crate::shader::{Part, Program};
@@ -25,9 +25,10 @@ pub struct LoopCap {
 }
 
 impl LoopCap {
-    /// Whether some loop fell short.
-    pub fn is_capped(&self) -> bool {
-        [self.single, self.nested].iter().any(|turns| turns.made != turns.expected)
+    /// Turns after which the device ended the loop that fell shortest of what was asked, if one did.
+    pub fn turns(&self) -> Option<u32> {
+        let short = [self.single, self.nested].into_iter().filter(|turns| turns.made != turns.expected);
+        short.map(|turns| turns.made).min()
     }
 }
 
@@ -44,6 +45,19 @@ struct Probe {
     inner: u32,
     made: u32,
     mixed: u32,
+}
+
+/// [`loop_cap`] of every device.
+///
+/// # Errors
+/// [`crate::Error::Device`] where there is no device, or the first that fails.
+pub fn loop_caps() -> Result<Vec<(Description, LoopCap)>> {
+    let devices = Device::open_each();
+    if devices.is_empty() {
+        // Says how to install one.
+        Device::open(&DeviceSelector::Any)?;
+    }
+    devices.into_iter().map(|(description, _, device)| Ok((description, loop_cap(&device?)?))).collect()
 }
 
 /// Counts the turns that the device makes of long loops.

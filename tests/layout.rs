@@ -101,15 +101,7 @@ fn rust_structs() -> Vec<Struct> {
             min_z,
             max_z,
         }),
-        rust_struct!(Instance {
-            object_from_world,
-            shape,
-            material,
-            root,
-            flags,
-            world_from_object,
-            parameters
-        }),
+        rust_struct!(Instance { object_from_world, shape, material, root, flags, world_from_object, parameters }),
         rust_struct!(Triangle { p0, n0, p1, n1, p2, n2, uv0, uv1, uv2, flags }),
         rust_struct!(Material {
             diffuse,
@@ -229,7 +221,7 @@ fn differences(rust: &[Struct], wgsl: &[Struct]) -> Vec<String> {
 
 /// Names after `keyword` at the starts of lines: what `src/layout.rs` declares.
 fn declared(keyword: &str) -> BTreeSet<String> {
-    let source = include_str!("../../src/layout.rs");
+    let source = include_str!("../src/layout.rs");
     let name = |rest: &str| rest.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or("").to_owned();
     source.lines().filter_map(|line| line.strip_prefix(keyword)).map(name).collect()
 }

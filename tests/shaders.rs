@@ -1,6 +1,7 @@
 //! Linking and specialising the WGSL program, and where its errors are said to lie.
 
 use gpu_trace::Error;
+use gpu_trace::flatten::FeatureSet;
 use gpu_trace::gpu::probe::LOOP_PROBE;
 use gpu_trace::shader::{PARTS, Part, Program, RENDER_ENTRY_POINT};
 use std::collections::BTreeSet;
@@ -90,7 +91,7 @@ fn errors_name_the_part_line_and_column() {
         ("shaders/types.wgsl", "nonsense", 1),
         ("shaders/geometry/hit.wgsl", "fn bad() -> f32 { return 1u; }", 26),
         ("shaders/tally.wgsl", "fn bad() -> f32 { return absent; }", 26),
-        ("shaders/bindings.wgsl", "@group(0) @binding(10) var<uniform> bad: array<f32, 4>;", 1),
+        ("shaders/bindings.wgsl", "@group(0) @binding(10) var<uniform> bad: array<f32, 4>;", 24),
     ];
     for (path, text, column) in cases {
         let (parts, line) = with_appended(path, text);
@@ -138,4 +139,14 @@ override DIVIDED: u32 = 1u / select(0u, 1u, HAS_A);
     assert!(message("kernel", &[("HAS_A", false)]).contains("HAS_A = false"));
     assert!(message("kernel", &[("HAS_B", true)]).contains("HAS_B"));
     assert!(message("absent", &[]).contains("absent"));
+}
+
+#[test]
+fn every_override_is_a_feature() {
+    let program = Program::renderer().unwrap();
+    let declared: BTreeSet<String> = override_names(&program).into_iter().collect();
+    let set: BTreeSet<String> = FeatureSet::ALL_ON.overrides().into_iter().map(|(name, _)| name.to_owned()).collect();
+    assert_eq!(declared, set);
+    assert!(FeatureSet::ALL_ON.overrides().into_iter().all(|(_, value)| value));
+    assert!(FeatureSet::ALL_OFF.overrides().into_iter().all(|(_, value)| !value));
 }
