@@ -1,5 +1,9 @@
 //! All tests in one program: one link, and one start of the Vulkan driver.
 
+mod support;
+
+mod analytic;
 mod gpu;
 mod layout;
 mod shaders;
+mod statistics;
