@@ -3,7 +3,12 @@
 mod support;
 
 mod analytic;
+mod flatten;
+mod flatten_tables;
 mod gpu;
 mod layout;
 mod shaders;
 mod statistics;
+mod surfaces;
+mod traversal;
+mod traversal_gpu;

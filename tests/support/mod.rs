@@ -1,5 +1,7 @@
 //! Scenes built in a few lines, and pictures of them from either renderer.
 
+pub mod placed;
+
 use glam::{DAffine3, DVec3, Vec3};
 use gpu_trace::device::{DeviceChoice, open_renderer};
 use gpu_trace::film::Film;
