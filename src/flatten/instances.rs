@@ -45,7 +45,7 @@ pub fn build(
         instance.material = materials.get(&placement.material).copied().unwrap_or(0);
         let bounds = match &placement.geometry.shape {
             Shape::Mesh(mesh) => {
-                // The node's index in `meshes` stands in for the root until the mesh has its place.
+                // The mesh's index stands in for its root, which is known once the upper level is built.
                 let Some(index) = meshes.index_of(mesh) else { continue };
                 let mesh = &meshes.built[index];
                 if mesh.triangles.is_empty() {
@@ -64,7 +64,8 @@ pub fn build(
                 }
             },
         };
-        if !(bounds.min.abs().max(bounds.max.abs()).max_element() <= MAX_COORDINATE) {
+        let reach = bounds.min.abs().max(bounds.max.abs());
+        if !reach.cmple(DVec3::splat(MAX_COORDINATE)).all() {
             return Err(Error::Scene(format!(
                 "node '{name}' reaches from {} to {}; coordinates must lie within ±1e12",
                 bounds.min, bounds.max
