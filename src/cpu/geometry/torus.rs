@@ -42,7 +42,7 @@ pub fn torus_intersect(origin: Vec3, direction: Vec3, t_max: f32, radii: Vec2) -
     let entry = (centre - half).max(bottom.min(top));
     let near = entry.max(0.0);
     let far = (centre + half).min(bottom.max(top));
-    let meets = near < far && near < t_max * length && (discriminant >= 0.0 || a < 1.0e-8);
+    let meets = near < far && (discriminant >= 0.0 || a < 1.0e-8);
     if !meets {
         return ShapeHit { t: MISS, face: 0 };
     }
@@ -78,9 +78,10 @@ pub fn torus_intersect(origin: Vec3, direction: Vec3, t_max: f32, radii: Vec2) -
         (true, false) => (first, second),
     };
 
-    // A last step of 2e-4 r leaves an error of its square, 2e-8 r at a right angle; the other term is rounding noise.
-    let tolerance = 2.0e-4 * minor + 2.0e-6 * outer;
+    // A last step of 1e-4 r leaves an error of its square, 5e-9 r at a right angle; the other term is rounding noise.
+    let tolerance = 1.0e-4 * minor + 2.0e-6 * outer;
     let mut late = !tries_early;
+    let mut last = 0.0;
     let mut missed = false;
     for _ in 0..TORUS_STEPS {
         let g = torus_implicit(o, u, s, radii);
@@ -91,15 +92,19 @@ pub fn torus_intersect(origin: Vec3, direction: Vec3, t_max: f32, radii: Vec2) -
         if missed {
             break;
         }
+        // Newton's method comes from one side; where it turns back, all that is left of g is rounding.
         let step = -0.5 * g.x / g.y;
+        let turned = step * last < 0.0;
         if lost {
             s = fallback;
+            last = 0.0;
             limit = end;
             late = true;
         } else {
-            s += step;
+            s = if turned { s } else { s + step };
+            last = step;
         }
-        if !lost && step.abs() <= tolerance {
+        if !lost && (turned || step.abs() <= tolerance) {
             break;
         }
     }
