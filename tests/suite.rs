@@ -3,4 +3,8 @@
 mod support;
 
 mod analytic;
+mod devices;
+mod gpu;
+mod layout;
+mod shaders;
 mod statistics;
