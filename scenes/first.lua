@@ -1,0 +1,55 @@
+-- A gold ring, a glass ball and a mirror ball, in a spiral of small coloured balls.
+-- Look for the ring's reflection in the floor, the world upside down in the glass, and soft shadows of two lights.
+-- 640x360, 9 camera samples a pixel: some seconds on two CPU cores.
+
+local function hue(h) -- a colour circle of even brightness, h in turns
+  local function wave(shift) return 0.5 + 0.42 * math.cos(2 * math.pi * (h - shift)) end
+  return { wave(0), wave(1 / 3), wave(2 / 3) }
+end
+
+local gold = gr.refl_material({ 0.55, 0.36, 0.10 }, { 0.8, 0.7, 0.4 }, 60, 0.45)
+local mirror = gr.refl_material({ 0.04, 0.04, 0.05 }, { 0.9, 0.9, 0.9 }, 200, 0.85)
+local glass = gr.refl_material({ 0, 0, 0 }, { 0.8, 0.8, 0.8 }, 200, 1, 0, 1.5)
+local floor = gr.refl_material({ 0.62, 0.60, 0.58 }, { 0, 0, 0 }, 1, 0.18)
+
+local scene = gr.node('scene')
+
+local function add(shape, material)
+  shape:set_material(material)
+  scene:add_child(shape)
+  return shape
+end
+
+add(gr.plane('floor'), floor)
+
+-- The ring stands on the floor, turned a little to the right.
+local ring = add(gr.torus('ring', 1.15, 0.34), gold)
+ring:rotate('x', 90)
+ring:rotate('y', 24)
+ring:translate(-0.1, 1.49, -0.6)
+
+add(gr.nh_sphere('glass', { -1.45, 0.85, 1.15 }, 0.85), glass)
+add(gr.nh_sphere('mirror', { 1.75, 0.7, 0.55 }, 0.7), mirror)
+
+-- Sunflower spiral (Vogel 1979): each ball is the golden angle further round. Some places are taken.
+local taken = { { -1.45, 1.15, 0.85 }, { 1.75, 0.55, 0.7 }, { -0.1, -0.6, 0.75 } }
+for i = 6, 150 do
+  local angle, distance = i * math.pi * (3 - math.sqrt(5)), 0.44 * math.sqrt(i)
+  local x, z, r = distance * math.cos(angle), distance * math.sin(angle), 0.13
+  local free = true
+  for _, t in ipairs(taken) do
+    free = free and math.sqrt((x - t[1]) ^ 2 + (z - t[2]) ^ 2) > t[3] + r
+  end
+  if free then
+    local ball = gr.nh_sphere('ball' .. i, { x, r, z }, r)
+    add(ball, gr.material(hue(i / 89), { 0.35, 0.35, 0.35 }, 40))
+  end
+end
+
+local key = gr.light({ -4, 7, 5 }, { 0.72, 0.68, 0.60 }, { 1, 0, 0 })
+local fill = gr.light({ 6, 4, 4 }, { 0.22, 0.25, 0.32 }, { 1, 0, 0 })
+
+gr.render(scene, 'first.png', 640, 360,
+  { 0.4, 2.5, 7.6 }, { 0.05, 0.95, 0 }, { 0, 1, 0 }, 36,
+  { 0.24, 0.24, 0.27 }, { key, fill },
+  3, 1, 2) -- AA, GLOSSY, SHADOW

@@ -1,0 +1,1 @@
+//! What `gpu-trace doctor` finds out about devices.
