@@ -3,7 +3,7 @@
 use crate::cpu::bindings::Bindings;
 use crate::cpu::media::media_at;
 use crate::film::Film;
-use crate::flatten::{SceneBuffers, WorkPlan};
+use crate::flatten::{SceneBuffers, WorkPlan, plan_work};
 use crate::layout::{Dispatch, Frame, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
 use crate::renderer::{Renderer, Tally};
 use crate::{Error, Result};
@@ -19,6 +19,8 @@ const FIRST_RUN_BLOCKS: u64 = 32;
 const GROWTH: f64 = 4.0;
 /// Dispatches in one submit.
 const MAX_DISPATCHES: usize = 256;
+/// Blocks in one dispatch: WebGPU's limit of workgroups in a row.
+const MAX_BLOCKS: u64 = 65_535;
 /// Turns of the loop that shows whether the driver cuts loops short.
 const CANARY_TURNS: u32 = 4;
 /// Edge of a block in pixels; the kernels' workgroup covers one.
@@ -33,12 +35,19 @@ pub struct RenderOptions {
     pub blocks_per_dispatch: Option<u32>,
     /// The most pixels to render at a time, where the device could hold more.
     pub max_band_pixels: Option<u64>,
+    /// The work of a pass, in place of the planned one; it is divided all the same where a bound is met.
+    pub plan: Option<WorkPlan>,
 }
 
 impl RenderOptions {
     /// All samples that the scene asks for.
     pub fn whole(scene: &SceneBuffers) -> Self {
-        RenderOptions { samples: 0..scene.samples, blocks_per_dispatch: None, max_band_pixels: None }
+        RenderOptions {
+            samples: 0..scene.sampling.camera,
+            blocks_per_dispatch: None,
+            max_band_pixels: None,
+            plan: None,
+        }
     }
 }
 
@@ -111,7 +120,8 @@ pub fn render(
         control,
         started,
         frame,
-        plan: scene.work,
+        scene: &scene,
+        plan: options.plan.unwrap_or_else(|| plan(&scene, 1)),
         run_blocks: FIRST_RUN_BLOCKS as f64,
         tally: Tally::default(),
         pixels_before: 0,
@@ -136,6 +146,10 @@ pub fn render(
     })
 }
 
+fn plan(scene: &SceneBuffers, min_passes: u32) -> WorkPlan {
+    plan_work(scene.frame.light_count, scene.sampling.shadow, scene.sampling.glossy, min_passes)
+}
+
 /// Rows of a band: whole blocks, as many as the film buffer holds.
 fn band_rows(width: u32, height: u32, band_pixels: u64) -> Result<u32> {
     let fitting = band_pixels / u64::from(width);
@@ -155,6 +169,7 @@ struct Job<'a> {
     options: &'a RenderOptions,
     control: &'a mut dyn RenderControl,
     started: Instant,
+    scene: &'a SceneBuffers,
     frame: Frame,
     plan: WorkPlan,
     /// Blocks that the next submit takes.
@@ -169,7 +184,7 @@ impl Job<'_> {
     /// Renders a band, with more passes of fewer rays each where a bound is met.
     fn render_band(&mut self, rows: Range<u32>) -> Result<()> {
         loop {
-            self.plan.apply(&mut self.frame);
+            self.frame = self.plan.applied_to(self.frame);
             self.renderer.begin_band(rows.clone())?;
             let flags = self.render_passes(&rows)?;
             if flags & STATUS_STACK_FULL != 0 {
@@ -178,13 +193,14 @@ impl Job<'_> {
             if flags & STATUS_LOOP_BOUND == 0 {
                 return Ok(());
             }
-            self.plan = self.plan.with_more_passes().ok_or_else(|| {
-                Error::Kernel(
+            if !self.plan.can_halve() {
+                return Err(Error::Kernel(
                     "one ray tree of this scene takes more loop turns than the driver runs, even with one ray a \
                      choice; lower --max-depth, update the driver (Mesa 23 or later), or use --device cpu"
                         .into(),
-                )
-            })?;
+                ));
+            }
+            self.plan = plan(self.scene, self.plan.pass_count.saturating_mul(2));
             log::info!("a loop bound was met: rendering again with {} passes a sample", self.plan.pass_count);
         }
     }
@@ -207,7 +223,7 @@ impl Job<'_> {
             let run = (self.run_blocks as u64).max(1);
             while next < total && next - first < run && dispatches.len() < MAX_DISPATCHES {
                 let (pass, block) = (next / blocks, next % blocks);
-                let mut count = (blocks - block).min(run - (next - first));
+                let mut count = (blocks - block).min(run - (next - first)).min(MAX_BLOCKS);
                 if let Some(fixed) = self.options.blocks_per_dispatch {
                     count = count.min(u64::from(fixed.max(1)));
                 }

@@ -4,7 +4,7 @@
 use crate::support::{Stage, paint, render_with};
 use glam::{DAffine3, DVec3, Vec3};
 use gpu_trace::device::{DeviceChoice, open_renderer};
-use gpu_trace::flatten::flatten;
+use gpu_trace::flatten::{WorkPlan, flatten};
 use gpu_trace::layout::STATUS_LOOP_BOUND;
 use gpu_trace::render::{RenderOptions, Unattended, render};
 use gpu_trace::scene::{LightExtent, Shape};
@@ -33,13 +33,13 @@ fn heavy_stage(lights: u32, shadow: u32) -> Stage {
 #[test]
 fn work_beyond_the_cap_renders_right() {
     let scene = heavy_stage(40, 16).finish();
-    let mut buffers = flatten(&scene).unwrap_or_else(|error| panic!("{error}"));
+    let buffers = Arc::new(flatten(&scene).unwrap_or_else(|error| panic!("{error}")));
     // One pass for all 640 shadow rays, ten times the ordinary budget.
-    buffers.work = buffers.work.with_passes(1);
-    let buffers = Arc::new(buffers);
+    let plan =
+        WorkPlan { pass_count: 1, shadow_count: 16, light_samples: 640, deep_light_samples: 8, glossy_samples: 1 };
     let picture = |choice: DeviceChoice| {
         let (mut renderer, info) = open_renderer(&choice, false).unwrap_or_else(|error| panic!("{error}"));
-        let options = RenderOptions::whole(&buffers);
+        let options = RenderOptions { plan: Some(plan), ..RenderOptions::whole(&buffers) };
         let rendered =
             render(buffers.clone(), renderer.as_mut(), &options, &mut Unattended).unwrap_or_else(|error| panic!("{error}"));
         println!("{}: {} passes, {} rays", info.name, rendered.passes, rendered.tally.total_rays());

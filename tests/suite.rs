@@ -1,1 +1,6 @@
 //! All tests in one program: one link, and one start of the Vulkan driver.
+
+mod support;
+
+mod analytic;
+mod statistics;

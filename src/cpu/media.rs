@@ -24,7 +24,7 @@ pub fn media_at(scene: &Bindings, point: Vec3) -> UVec2 {
         if hit.t < 0.0 {
             break;
         }
-        let surface = surface_at(scene, &hit, origin, PROBE);
+        let surface = surface_at(scene, hit, origin, PROBE);
         let medium = scene.materials[surface.material as usize].medium;
         if medium != 0 {
             let count = &mut entered[medium as usize];

@@ -165,7 +165,7 @@ fn ray_radiance(scene: &Bindings, ray: &Ray, pass_index: u32, tally: &mut Tally)
         let transparent = ray.depth == 0 && scene.frame.flags & FRAME_TRANSPARENT != 0;
         return (!transparent).then(|| background(scene, ray.direction));
     }
-    let surface = surface_at(scene, &hit, ray.origin, ray.direction);
+    let surface = surface_at(scene, hit, ray.origin, ray.direction);
     let material = &scene.materials[surface.material as usize];
     let direct = direct_light(scene, &surface, material, -ray.direction, ray, pass_index, tally);
     let mut radiance = material.emission + scene.frame.ambient * material.diffuse + direct;

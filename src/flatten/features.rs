@@ -13,7 +13,7 @@ pub struct FeatureSet {
     pub torus: bool,
     pub plane: bool,
     pub mesh: bool,
-    /// A material that reflects.
+    /// A material that reflects, be it by total internal reflection.
     pub reflection: bool,
     /// A material with a refractive index.
     pub refraction: bool,
@@ -74,7 +74,7 @@ impl FeatureSet {
             torus: has(layout::SHAPE_TORUS),
             plane: has(layout::SHAPE_PLANE),
             mesh: has(layout::SHAPE_MESH),
-            reflection: materials.iter().any(|material| material.reflection != 0.0),
+            reflection: materials.iter().any(|material| material.reflection != 0.0 || material.ior != 0.0),
             refraction: materials.iter().any(|material| material.ior != 0.0),
             glossy: materials.iter().any(|material| material.reflection != 0.0 && material.glossy != 0.0),
             area_light: buffers.lights.iter().any(|light| light.kind != layout::LIGHT_POINT),

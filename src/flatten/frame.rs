@@ -9,6 +9,9 @@ use glam::{UVec2, Vec3};
 /// Shadow rays of one camera ray at its first hit, over all lights; more are refused.
 const MAX_SHADOW_RAYS: u64 = 1 << 24;
 
+/// Reflections and refractions one after another; the reference renderer recurses once for each.
+const MAX_DEPTH: u32 = 100;
+
 pub fn frame(scene: &Scene, plane_count: u32, has_root: bool) -> Result<Frame> {
     let camera = &scene.camera;
     let sampling = &scene.sampling;
@@ -20,6 +23,12 @@ pub fn frame(scene: &Scene, plane_count: u32, has_root: bool) -> Result<Frame> {
         return Err(Error::Scene(format!(
             "the camera's angle of view is {} degrees; it must lie between 0 and 180",
             camera.fov
+        )));
+    }
+    if sampling.max_depth > MAX_DEPTH {
+        return Err(Error::Scene(format!(
+            "a depth of {} is asked for; at most {MAX_DEPTH} is possible",
+            sampling.max_depth
         )));
     }
     let shadow_rays = scene.lights.len() as u64 * u64::from(sampling.shadow);

@@ -5,7 +5,7 @@ use crate::layout::{Material, NONE};
 use crate::scene::{self, MaterialId, Scene};
 use crate::{Error, Result};
 use glam::Vec3;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Media are numbered from 1; two of them share a word in the kernel.
 pub const MAX_MEDIA: u32 = 65_535;
@@ -13,35 +13,26 @@ pub const MAX_MEDIA: u32 = 65_535;
 /// Where each material of the scene went; a node without one has the default.
 pub type MaterialIndices = HashMap<Option<MaterialId>, u32>;
 
-/// The materials of the placements, in the order of their first use.
+/// The materials of the placements, the refractive ones first: the number of a medium is the index of its material
+/// plus 1, which is how the kernels find its refractive index.
 pub fn materials_in_use(scene: &Scene, placements: &[Placement]) -> Result<(Vec<Material>, MaterialIndices)> {
-    let mut packed = Vec::new();
-    let mut indices = MaterialIndices::new();
-    let mut media = 0;
-    for placement in placements {
-        let default = scene::Material::default();
-        indices.entry(placement.material).or_insert_with(|| {
-            let material = placement.material.map_or(&default, |id| &scene.graph.materials[id.0 as usize]);
-            packed.push(pack(material, &mut media));
-            (packed.len() - 1) as u32
-        });
-    }
-    if media > MAX_MEDIA {
+    let default = scene::Material::default();
+    let described = |id: Option<MaterialId>| id.map_or(&default, |id| &scene.graph.materials[id.0 as usize]);
+    let mut seen = HashSet::new();
+    let mut order: Vec<_> =
+        placements.iter().map(|placement| placement.material).filter(|id| seen.insert(*id)).collect();
+    order.sort_by_key(|id| described(*id).ior.is_none());
+    let media = order.iter().filter(|id| described(**id).ior.is_some()).count();
+    if media > MAX_MEDIA as usize {
         return Err(Error::Scene(format!(
             "the scene uses {media} refractive materials; at most {MAX_MEDIA} are possible"
         )));
     }
-    Ok((packed, indices))
+    let packed = (1..).zip(&order).map(|(medium, id)| pack(described(*id), medium)).collect();
+    Ok((packed, order.into_iter().zip(0..).collect()))
 }
 
-fn pack(material: &scene::Material, media: &mut u32) -> Material {
-    let medium = match material.ior {
-        Some(_) => {
-            *media += 1;
-            *media
-        }
-        None => 0,
-    };
+fn pack(material: &scene::Material, medium: u32) -> Material {
     Material {
         diffuse: material.diffuse,
         shininess: material.shininess,
@@ -55,7 +46,7 @@ fn pack(material: &scene::Material, media: &mut u32) -> Material {
         flags: 0,
         texture: NONE,
         bump: NONE,
-        medium,
+        medium: if material.ior.is_some() { medium } else { 0 },
         pad: 0,
     }
 }

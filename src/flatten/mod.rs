@@ -18,7 +18,7 @@ pub use work::{MAX_DEEP_LIGHT_SAMPLES, MAX_GLOSSY_SAMPLES, MAX_LIGHT_SAMPLES, Wo
 
 use crate::Result;
 use crate::layout::{Frame, Instance, Light, Material, Node, Triangle};
-use crate::scene::Scene;
+use crate::scene::{Sampling, Scene};
 use std::time::Instant;
 
 /// Everything that the renderers read; `layout` says what each field holds.
@@ -35,6 +35,8 @@ pub struct SceneBuffers {
     pub materials: Vec<Material>,
     pub lights: Vec<Light>,
     pub texels: Vec<u32>,
+    /// The rays that the scene asks for.
+    pub sampling: Sampling,
     /// What the kernel is specialised to.
     pub features: FeatureSet,
     /// What flattening did, for messages.
@@ -84,6 +86,7 @@ pub fn flatten(scene: &Scene) -> Result<SceneBuffers> {
         materials,
         lights,
         texels: Vec::new(),
+        sampling: scene.sampling,
         features: FeatureSet::ALL_OFF,
         statistics: Statistics {
             meshes: meshes.built.len(),

@@ -10,6 +10,7 @@ use crate::renderer::{Renderer, Tally};
 use crate::shader::{Program, RENDER_ENTRY_POINT};
 use crate::{Error, Result};
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// How to run the kernel.
@@ -64,15 +65,15 @@ impl Renderer for GpuRenderer {
     /// # Errors
     /// [`Error::Limit`] for a scene that the device cannot hold, [`Error::Shader`], and [`Error::Device`] where the
     /// device runs out of memory or is lost, as from every other call.
-    fn prepare(&mut self, scene: &SceneBuffers) -> Result<()> {
+    fn prepare(&mut self, scene: Arc<SceneBuffers>) -> Result<()> {
         // Frees the memory of the scene before.
         self.session = None;
         let start = Instant::now();
         let source = self.program.source();
-        let overrides = overrides(scene);
+        let overrides = scene.features.overrides();
         let pipeline = Pipeline::new(&self.device, source, &self.entry_point, &overrides, self.options.checked)?;
         let compiled = start.elapsed();
-        let mut session = Session::new(&self.device, pipeline, scene)?;
+        let mut session = Session::new(&self.device, pipeline, &scene)?;
         let start = Instant::now();
         session.warm_up(&scene.frame)?;
         self.warmup_seconds = (compiled + start.elapsed()).as_secs_f64();
@@ -98,9 +99,4 @@ impl Renderer for GpuRenderer {
     fn end_band(&mut self, film: &mut Film) -> Result<()> {
         self.session()?.end_band(film)
     }
-}
-
-/// The `override` constants that specialise the kernel to a scene.
-fn overrides(_scene: &SceneBuffers) -> Vec<(&'static str, bool)> {
-    Vec::new()
 }
