@@ -26,7 +26,6 @@ pub const PARTS: &[Part<'static>] = parts![
     "types.wgsl"
     "bindings.wgsl"
     "tally.wgsl"
-    "film.wgsl"
     "math/elementary.wgsl"
     "math/rng.wgsl"
     "math/sampling.wgsl"
@@ -46,6 +45,7 @@ pub const PARTS: &[Part<'static>] = parts![
     "shading/light.wgsl"
     "camera.wgsl"
     "path.wgsl"
+    "film.wgsl"
     "kernels/render.wgsl"
 ];
 

@@ -3,4 +3,7 @@
 mod support;
 
 mod analytic;
+mod gpu;
+mod layout;
+mod shaders;
 mod statistics;

@@ -65,7 +65,7 @@ fn examine(description: &Description, limits: &DeviceLimits, reference: Option<&
         Err(error) => return print_line(&verdict(false, &format!("  open            {error}"))).map(|()| false),
     };
 
-    let loops = match probe::loop_cap(&device) {
+    let loops = match probe::loop_cap(&device).map(|cap| cap.turns()) {
         // Rendering copes with a cap: its loops are counted, and it says so where they are cut short.
         Ok(Some(turns)) => (true, format!("the driver ends loops after {turns} turns of one invocation; allowed for")),
         Ok(None) => (true, "run as long as they should".to_owned()),
