@@ -1,1 +1,10 @@
 //! All tests in one program: one link, and one start of the Vulkan driver.
+
+mod support;
+
+mod suite {
+    mod function_tables;
+    mod intersections;
+    mod roots;
+    mod triangles;
+}
