@@ -4,10 +4,15 @@ mod support;
 
 mod analytic;
 mod devices;
+mod function_tables;
 mod gpu;
+mod intersections;
 mod layout;
 mod loop_cap;
 mod parity;
+mod roots;
 mod shaders;
+mod shading_tables;
 mod single_rays;
 mod statistics;
+mod triangles;

@@ -53,7 +53,9 @@ fn cone_project(point: vec3<f32>, face: u32) -> vec3<f32> {
     // The foot on the generator (rho, y) = s (1, -1).
     let s = clamp(0.5 * (rho - point.y), 0.0, 1.0);
     let scale = select(1.0 / max(rho, 1.0), s / max(rho, TINY), on_side);
-    return vec3<f32>(point.x * scale, select(-1.0, -s, on_side), point.z * scale);
+    // On the axis any generator will do.
+    let x = select(point.x * scale, s, on_side && rho <= TINY);
+    return vec3<f32>(x, select(-1.0, -s, on_side), point.z * scale);
 }
 
 fn cone_normal(point: vec3<f32>, face: u32) -> vec3<f32> {

@@ -60,7 +60,9 @@ pub fn cone_project(point: Vec3, face: u32) -> Vec3 {
     // The foot on the generator (rho, y) = s (1, -1).
     let s = (0.5 * (rho - point.y)).clamp(0.0, 1.0);
     let scale = if on_side { s / rho.max(TINY) } else { 1.0 / rho.max(1.0) };
-    Vec3::new(point.x * scale, if on_side { -s } else { -1.0 }, point.z * scale)
+    // On the axis any generator will do.
+    let x = if on_side && rho <= TINY { s } else { point.x * scale };
+    Vec3::new(x, if on_side { -s } else { -1.0 }, point.z * scale)
 }
 
 /// Unit outward normal at a point of the face; the apex takes the direction of the axis.
