@@ -34,7 +34,11 @@ local teal = bunny(gr.material({ 0.20, 0.52, 0.52 }, { 0.3, 0.3, 0.3 }, 40))
 
 add(gr.plane('floor'), gr.material({ 0.60, 0.59, 0.57 }, { 0, 0, 0 }, 1))
 
--- A mirror in a wooden frame, leaning back a little.
+local wall = add(gr.plane('wall'), gr.material({ 0.34, 0.42, 0.40 }, { 0, 0, 0 }, 1))
+wall:rotate('x', 90)
+wall:translate(0, 0, -2.6)
+
+-- A mirror in a wooden frame, hung so that it leans forward.
 local frame = gr.node('frame')
 local wood = gr.material({ 0.36, 0.22, 0.13 }, { 0.2, 0.2, 0.2 }, 30)
 local function slab(material, x, y, z, w, h, d)
@@ -45,10 +49,10 @@ local function slab(material, x, y, z, w, h, d)
   box:translate(x, y, z)
   frame:add_child(box)
 end
-slab(wood, 0, 0, -0.06, 5.2, 2.6, 0.1)
-slab(gr.refl_material({ 0.03, 0.03, 0.03 }, { 0, 0, 0 }, 1, 0.9), 0, 0.12, 0, 4.96, 2.36, 0.04)
-frame:rotate('x', -5)
-frame:translate(0, 0, -1.5)
+slab(wood, 0, 0, -0.06, 4.2, 1.9, 0.1)
+slab(gr.refl_material({ 0.03, 0.03, 0.03 }, { 0, 0, 0 }, 1, 0.9), 0, 0.1, 0, 4.0, 1.7, 0.04)
+frame:rotate('x', 12)
+frame:translate(0, 0.75, -2.35)
 scene:add_child(frame)
 
 local stand = add(gr.cylinder('stand'), gr.material({ 0.30, 0.31, 0.34 }, { 0.4, 0.4, 0.4 }, 60))

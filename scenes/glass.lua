@@ -24,7 +24,7 @@ for i, colour in ipairs({ { 0.86, 0.85, 0.82 }, { 0.34, 0.44, 0.50 } }) do
   tiles[i]:set_material(gr.material(colour, { 0.1, 0.1, 0.1 }, 20))
   tiles[i]:scale(0.77, 0.02, 0.77)
 end
-for row = -9, 4 do
+for row = -7, 6 do
   for column = -8, 7 do
     local place = gr.node('place')
     place:add_child(tiles[1 + (row + column) % 2])
@@ -32,6 +32,10 @@ for row = -9, 4 do
     scene:add_child(place)
   end
 end
+
+local wall = add(gr.plane('wall'), gr.material({ 0.66, 0.69, 0.72 }, { 0, 0, 0 }, 1))
+wall:rotate('x', 90)
+wall:translate(0, 0, -5.2)
 
 local colours = {
   { 0.82, 0.22, 0.20 }, { 0.93, 0.58, 0.16 }, { 0.93, 0.82, 0.28 }, { 0.36, 0.68, 0.32 },
@@ -46,8 +50,7 @@ end
 add(gr.nh_sphere('ball', { -1.75, 0.97, 0.25 }, 0.95), glass)
 
 -- Water: media nest by themselves, as a ray knows what it is in.
-local block = add(gr.nh_box('water', { 0.25, 0.03, -0.75 }, 1.7), water)
-local _ = block
+add(gr.nh_box('water', { 0.25, 0.03, -0.75 }, 1.7), water)
 add(gr.nh_sphere('glass in water', { 0.82, 0.62, 0.2 }, 0.42), glass)
 add(gr.nh_sphere('air in water', { 1.52, 1.12, 0.0 }, 0.3), air)
 -- Shapes do not let light through to what they hold, so the berries have a light of their own in the water.
