@@ -4,6 +4,8 @@ mod support;
 
 mod analytic;
 mod devices;
+mod flatten;
+mod flatten_tables;
 mod function_tables;
 mod gpu;
 mod intersections;
@@ -15,4 +17,7 @@ mod shaders;
 mod shading_tables;
 mod single_rays;
 mod statistics;
+mod surfaces;
+mod traversal;
+mod traversal_gpu;
 mod triangles;
