@@ -34,11 +34,11 @@ pub struct Arguments {
     pub render: Option<RenderArguments>,
 
     /// Say nothing on standard error but errors
-    #[arg(short, long, conflicts_with = "verbose", help_heading = "Messages", display_order = 100)]
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Messages", display_order = 100)]
     pub quiet: bool,
 
     /// Say more; -vv for debugging. RUST_LOG chooses module by module
-    #[arg(short, long, action = clap::ArgAction::Count, help_heading = "Messages", display_order = 101)]
+    #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = "Messages", display_order = 101)]
     pub verbose: u8,
 }
 

@@ -3,7 +3,7 @@
 
 use glam::{DAffine3, DVec3, Vec3};
 use gpu_trace::Result;
-use gpu_trace::film::{Comparison, Film, Mask, compare_images};
+use gpu_trace::film::{Comparison, Film, compare_images};
 use gpu_trace::flatten::flatten;
 use gpu_trace::render::{RenderOptions, Rendered, Unattended, render};
 use gpu_trace::renderer::Renderer;
@@ -29,7 +29,7 @@ pub fn agrees(comparison: &Comparison) -> bool {
 /// Compares the pictures of two films of the tile, the CPU's first.
 pub fn compare_tiles(reference: &Film, test: &Film) -> Result<Comparison> {
     let [reference, test] = [reference, test].map(|film| film.resolve(Transfer::Linear, false));
-    compare_images(&reference, &test, Mask::None)
+    compare_images(&reference, &test)
 }
 
 /// A matt ball above a mirror-like floor, a glass ball, and a soft-edged light: shadow, reflected and refracted rays.

@@ -34,7 +34,17 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
         ..defaults
     };
     let outcome = run_scene(&arguments.scene, &options, &mut |scene| session.picture(scene));
-    session.conclude(outcome.map(drop))
+    session.conclude(outcome.map(drop).map_err(|error| explain_subcommand(error, arguments)))
+}
+
+/// A subcommand that follows an option is taken for a scene, whose file then is missing.
+fn explain_subcommand(error: Error, arguments: &RenderArguments) -> Error {
+    match (&error, arguments.scene.to_str()) {
+        (Error::File { .. }, Some(name @ ("doctor" | "compare" | "help"))) => {
+            Error::Scene(format!("{error}; the subcommand '{name}' must come first"))
+        }
+        _ => error,
+    }
 }
 
 /// The pictures of one script.
