@@ -3,7 +3,10 @@
 mod support;
 
 mod analytic;
+mod cli;
+mod compare;
 mod devices;
+mod film;
 mod gpu;
 mod layout;
 mod shaders;

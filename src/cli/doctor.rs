@@ -5,9 +5,7 @@ use super::reference::{agrees, compare_tiles, render_known_answer, render_tile};
 use gpu_trace::device::DeviceInfo;
 use gpu_trace::film::Film;
 use gpu_trace::gpu::device::INSTALL_HINT;
-use gpu_trace::gpu::{
-    Description, Device, DeviceLimits, DeviceSelector, GpuOptions, GpuRenderer, list_adapters, probe,
-};
+use gpu_trace::gpu::{Description, Device, DeviceLimits, GpuOptions, GpuRenderer, probe};
 use gpu_trace::renderer::Renderer;
 use gpu_trace::{Error, Result};
 
@@ -33,12 +31,12 @@ pub fn run() -> Result<()> {
     }
     let reference = tile.ok().map(|tile| tile.film);
 
-    let adapters = list_adapters();
-    if adapters.is_empty() {
+    let devices = Device::open_each();
+    if devices.is_empty() {
         print_line(&format!("\nNo Vulkan, Metal or Direct3D 12 device was found; {INSTALL_HINT}."))?;
     }
-    for (description, limits) in adapters {
-        if !examine(&description, &limits, reference.as_ref())? {
+    for (description, limits, device) in devices {
+        if !examine(&description, &limits, device, reference.as_ref())? {
             failed.push(description.name);
         }
     }
@@ -50,7 +48,12 @@ pub fn run() -> Result<()> {
 }
 
 /// Whether the device passed its tests. Errors are those of printing.
-fn examine(description: &Description, limits: &DeviceLimits, reference: Option<&Film>) -> Result<bool> {
+fn examine(
+    description: &Description,
+    limits: &DeviceLimits,
+    device: Result<Device>,
+    reference: Option<&Film>,
+) -> Result<bool> {
     print_line(&format!("\n{}", DeviceInfo::new(description, String::new())))?;
     print_line(&format!(
         "  limits          {} in one binding, {} in one buffer, {} storage buffers, {} workgroups of up to {}",
@@ -60,7 +63,7 @@ fn examine(description: &Description, limits: &DeviceLimits, reference: Option<&
         limits.workgroups,
         limits.workgroup_invocations
     ))?;
-    let device = match Device::open(&DeviceSelector::Named(description.name.clone())) {
+    let device = match device {
         Ok(device) => device,
         Err(error) => {
             return print_line(&format!("  open            {}", verdict(false, &error.to_string()))).map(|()| false);

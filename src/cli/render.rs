@@ -30,7 +30,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     let options = ScriptOptions {
         frame: arguments.frame,
         seed: arguments.seed.unwrap_or(defaults.seed),
-        conventions: arguments.conventions.clone().unwrap_or_default(),
+        conventions: arguments.conventions.unwrap_or_default(),
         ..defaults
     };
     let outcome = run_scene(&arguments.scene, &options, &mut |scene| session.picture(scene));
