@@ -82,7 +82,7 @@ fn wrong_arguments_are_usage_errors() {
         ("scene.lua --size 640", "such as 640x480"),
         ("scene.lua --size 640x", "such as 640x480"),
         ("scene.lua --size 0x480", "no pixels"),
-        ("scene.lua --size -1x480", "--size"),
+        ("scene.lua --size=-1x480", "such as 640x480"),
         ("scene.lua --size 4294967295x4294967295", "more than"),
         ("scene.lua --samples 0", "--samples"),
         ("scene.lua --samples many", "many"),
