@@ -3,7 +3,10 @@
 mod support;
 
 mod analytic;
+mod cli;
+mod compare;
 mod devices;
+mod film;
 mod flatten;
 mod flatten_tables;
 mod function_tables;

@@ -30,11 +30,21 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     let options = ScriptOptions {
         frame: arguments.frame,
         seed: arguments.seed.unwrap_or(defaults.seed),
-        conventions: arguments.conventions.clone().unwrap_or_default(),
+        conventions: arguments.conventions.unwrap_or_default(),
         ..defaults
     };
     let outcome = run_scene(&arguments.scene, &options, &mut |scene| session.picture(scene));
-    session.conclude(outcome.map(drop))
+    session.conclude(outcome.map(drop).map_err(|error| explain_subcommand(error, arguments)))
+}
+
+/// A subcommand that follows an option is taken for a scene, whose file then is missing.
+fn explain_subcommand(error: Error, arguments: &RenderArguments) -> Error {
+    match (&error, arguments.scene.to_str()) {
+        (Error::File { .. }, Some(name @ ("doctor" | "compare" | "help"))) => {
+            Error::Scene(format!("{error}; the subcommand '{name}' must come first"))
+        }
+        _ => error,
+    }
 }
 
 /// The pictures of one script.
