@@ -3,6 +3,7 @@
 mod support;
 
 mod analytic;
+mod devices;
 mod gpu;
 mod layout;
 mod shaders;

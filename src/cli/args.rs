@@ -13,7 +13,7 @@ Examples:
   gpu-trace scenes/first.lua -o out.png --size 1920x1080 --samples 64
   gpu-trace swing.lua 12                        frame 12 of an animation: gr.frame_cmd() gives 12
   gpu-trace scene.lua --device cpu -q --json -  no talk, the figures as JSON on standard output
-  gpu-trace doctor                              what devices there are, and whether they compute right
+  gpu-trace doctor                              the devices, and whether they compute right
   gpu-trace compare a.png b.png --fail-above 0.002
 
 The exit code is 0 when every picture was written, 2 for wrong arguments, 130 after an interrupt, else 1.

@@ -1,7 +1,7 @@
 //! `gpu-trace doctor`: what devices there are, what they allow, and whether they compute right.
 
 use super::compare::print_line;
-use super::reference::{TILE, TILE_SAMPLES, agrees, compare_tiles, render_known_answer, render_tile};
+use super::reference::{agrees, compare_tiles, render_known_answer, render_tile};
 use gpu_trace::device::DeviceInfo;
 use gpu_trace::film::Film;
 use gpu_trace::gpu::device::INSTALL_HINT;
@@ -62,11 +62,13 @@ fn examine(description: &Description, limits: &DeviceLimits, reference: Option<&
     ))?;
     let device = match Device::open(&DeviceSelector::Named(description.name.clone())) {
         Ok(device) => device,
-        Err(error) => return print_line(&verdict(false, &format!("  open            {error}"))).map(|()| false),
+        Err(error) => {
+            return print_line(&format!("  open            {}", verdict(false, &error.to_string()))).map(|()| false);
+        }
     };
 
     let loops = match probe::loop_cap(&device).map(|cap| cap.turns()) {
-        // Rendering copes with a cap: its loops are counted, and it says so where they are cut short.
+        // Rendering copes with a cap: the kernel notices loops that were cut short.
         Ok(Some(turns)) => (true, format!("the driver ends loops after {turns} turns of one invocation; allowed for")),
         Ok(None) => (true, "run as long as they should".to_owned()),
         Err(error) => (false, error.to_string()),
@@ -75,12 +77,14 @@ fn examine(description: &Description, limits: &DeviceLimits, reference: Option<&
 
     let mut renderer = match GpuRenderer::new(device, GpuOptions::default()) {
         Ok(renderer) => renderer,
-        Err(error) => return print_line(&verdict(false, &format!("  kernel          {error}"))).map(|()| false),
+        Err(error) => {
+            return print_line(&format!("  kernel          {}", verdict(false, &error.to_string()))).map(|()| false);
+        }
     };
     let known = known_answer(&mut renderer)?;
     let tile = match (render_tile(&mut renderer), reference) {
         (Ok(tile), Some(reference)) => match compare_tiles(reference, &tile.film) {
-            Ok(comparison) => (agrees(&comparison), format!("{comparison}, against the CPU")),
+            Ok(comparison) => (agrees(&comparison), format!("against the CPU {comparison}")),
             Err(error) => (false, error.to_string()),
         },
         (Ok(_), None) => (false, "nothing to compare with, as the CPU failed".to_owned()),
@@ -102,7 +106,7 @@ fn known_answer(renderer: &mut dyn Renderer) -> Result<bool> {
 }
 
 fn print_tile(text: &str) -> Result<()> {
-    print_line(&format!("  {:<15} {text}", format!("{TILE}x{TILE}, {TILE_SAMPLES} spp")))
+    print_line(&format!("  reference tile  {text}"))
 }
 
 fn verdict(passed: bool, text: &str) -> String {

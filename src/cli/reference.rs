@@ -14,9 +14,9 @@ use gpu_trace::scene::{
 use std::sync::Arc;
 
 /// Edge of the tile in pixels.
-pub const TILE: u32 = 64;
+const TILE: u32 = 64;
 /// Camera samples a pixel of the tile.
-pub const TILE_SAMPLES: u32 = 4;
+const TILE_SAMPLES: u32 = 4;
 
 /// Two devices agree where the tiles' FLIP mean and share of differing pixels are no larger.
 const FLIP_TOLERANCE: f64 = 0.002;

@@ -12,10 +12,8 @@ pub const CONE_CAP: u32 = 1;
 #[inline]
 pub fn cone_intersect(origin: Vec3, direction: Vec3, t_max: f32) -> ShapeHit {
     let d = direction;
-    // ⟨o, o⟩ loses its digits far out along the side: start from the closest approach to the apex instead.
-    let distance2 = origin.x * origin.x + origin.y * origin.y + origin.z * origin.z;
-    let approach = -(origin.x * d.x + origin.y * d.y + origin.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
-    let shift = if distance2 > 4.0 { approach } else { 0.0 };
+    // ⟨o, o⟩ loses its digits out along the side: start from the closest approach to the apex instead.
+    let shift = -(origin.x * d.x + origin.y * d.y + origin.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
     let o = origin + d * shift;
 
     // Parallel to the side, the second root is far away, but finite.
