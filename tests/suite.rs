@@ -6,5 +6,8 @@ mod analytic;
 mod devices;
 mod gpu;
 mod layout;
+mod loop_cap;
+mod parity;
 mod shaders;
+mod single_rays;
 mod statistics;
