@@ -25,7 +25,7 @@ for i, colour in ipairs({ { 0.86, 0.85, 0.82 }, { 0.34, 0.44, 0.50 } }) do
   tiles[i]:scale(0.77, 0.02, 0.77)
 end
 for row = -7, 6 do
-  for column = -8, 7 do
+  for column = -9, 8 do
     local place = gr.node('place')
     place:add_child(tiles[1 + (row + column) % 2])
     place:translate(0.8 * column, 0, 0.8 * row)
@@ -60,9 +60,9 @@ add(gr.nh_sphere('berry', { 1.2, 0.17, 0.7 }, 0.12), gr.material({ 0.95, 0.75, 0
 local ring = add(gr.torus('ring', 0.5, 0.17), glass)
 ring:translate(-0.45, 0.2, 1.75)
 
-local key = gr.light({ -4, 8, 5 }, { 0.62, 0.60, 0.55 }, { 1, 0, 0 })
+local key = gr.light({ -4, 8, 5 }, { 0.72, 0.70, 0.65 }, { 1, 0, 0 })
 local fill = gr.light({ 6, 5, 6 }, { 0.22, 0.24, 0.28 }, { 1, 0, 0 })
-local inside = gr.light({ 1.0, 1.5, 0.75 }, { 0.5, 0.5, 0.5 }, { 1, 0, 0.4 })
+local inside = gr.light({ 1.0, 1.5, 0.75 }, { 0.6, 0.6, 0.6 }, { 1, 0, 0.4 })
 
 gr.render(scene, 'glass.png', 640, 360,
   { -0.3, 2.3, 7.2 }, { 0.05, 0.85, 0 }, { 0, 1, 0 }, 34,

@@ -5,7 +5,7 @@
 
 local paint = gr.material({ 0.80, 0.30, 0.16 }, { 0.5, 0.5, 0.5 }, 60)
 local steel = gr.refl_material({ 0.30, 0.31, 0.33 }, { 0.7, 0.7, 0.7 }, 90, 0.35)
-local glow = gr.material({ 3, 2.7, 2 }, { 0, 0, 0 }, 1)
+local glow = gr.material({ 5, 4.5, 3.4 }, { 0, 0, 0 }, 1)
 
 local function part(shape, material)
   shape:set_material(material)
@@ -106,7 +106,7 @@ local poses = { -- x, height of the hop, shoulder, elbow, neck
 for _, pose in ipairs(poses) do
   local node, under_bulb = lamp(table.unpack(pose))
   scene:add_child(node)
-  table.insert(lights, gr.light(under_bulb, { 0.85, 0.72, 0.50 }, { 0.6, 0, 0.55 }))
+  table.insert(lights, gr.light(under_bulb, { 1.1, 0.92, 0.62 }, { 0.6, 0, 0.5 }))
 end
 
 gr.render(scene, 'hierarchy.png', 640, 360,

@@ -9,7 +9,7 @@ gr.conventions { transforms = 'pre' }
 local scene = gr.node('scene')
 
 local floor = gr.plane('floor')
-floor:set_material(gr.material({ 0.55, 0.56, 0.60 }, { 0, 0, 0 }, 1))
+floor:set_material(gr.material({ 0.62, 0.63, 0.67 }, { 0, 0, 0 }, 1))
 scene:add_child(floor)
 
 local octahedron = gr.mesh('octahedron',
@@ -71,10 +71,10 @@ for i = -6, 6 do
   scene:add_child(bead)
 end
 
-local key = gr.light({ -6, 10, 8 }, { 0.75, 0.72, 0.66 }, { 1, 0, 0 })
+local key = gr.light({ -6, 10, 8 }, { 0.88, 0.85, 0.78 }, { 1, 0, 0 })
 local fill = gr.light({ 7, 5, 6 }, { 0.20, 0.22, 0.28 }, { 1, 0, 0 })
 
 gr.render(scene, 'primitives.png', 640, 360,
-  { 0, 4.9, 10.2 }, { 0, 0.52, 0 }, { 0, 1, 0 }, 27,
-  { 0.25, 0.25, 0.28 }, { key, fill },
+  { 0, 4.9, 10.2 }, { 0, 0.55, 0 }, { 0, 1, 0 }, 28,
+  { 0.28, 0.28, 0.31 }, { key, fill },
   3, 1, 2) -- AA, GLOSSY, SHADOW
