@@ -9,7 +9,6 @@ mod devices;
 mod film;
 mod flatten;
 mod flatten_tables;
-mod function_tables;
 mod gpu;
 mod intersections;
 mod layout;
