@@ -15,6 +15,7 @@ mod layout;
 mod loop_cap;
 mod parity;
 mod roots;
+mod script;
 mod shaders;
 mod shading_tables;
 mod single_rays;
