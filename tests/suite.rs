@@ -5,6 +5,7 @@ mod support;
 mod suite {
     mod function_tables;
     mod intersections;
+    mod math_tables;
     mod roots;
     mod triangles;
 }
