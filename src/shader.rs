@@ -45,6 +45,7 @@ pub const PARTS: &[Part<'static>] = parts![
     "shading/light.wgsl"
     "camera.wgsl"
     "path.wgsl"
+    "film.wgsl"
     "kernels/render.wgsl"
 ];
 

@@ -2,9 +2,8 @@
 
 use crate::support::{Stage, paint, render_whole, render_with};
 use glam::{DAffine3, DVec3, Vec3};
-use gpu_trace::compare::{Comparison, compare_images};
 use gpu_trace::device::DeviceChoice;
-use gpu_trace::film::Film;
+use gpu_trace::film::{Comparison, Film, Mask, compare_images};
 use gpu_trace::scene::{LightExtent, Material, Scene, Shape};
 use gpu_trace::script::{ScriptOptions, load_scene};
 use std::path::{Path, PathBuf};
@@ -41,7 +40,7 @@ fn reduced_scenes(file: &Path) -> Vec<Scene> {
 
 fn compare(a: &Film, b: &Film, scene: &Scene) -> Comparison {
     let resolve = |film: &Film| film.resolve(scene.transfer, false);
-    compare_images(&resolve(a), &resolve(b)).unwrap_or_else(|error| panic!("{error}"))
+    compare_images(&resolve(a), &resolve(b), Mask::None).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The bounds of issue and design: FLIP at most 0.002, at most 0.1 % of the pixels off by more than 2/255.

@@ -2,10 +2,26 @@
 
 mod support;
 
-mod suite {
-    mod function_tables;
-    mod intersections;
-    mod math_tables;
-    mod roots;
-    mod triangles;
-}
+mod analytic;
+mod cli;
+mod compare;
+mod devices;
+mod film;
+mod flatten;
+mod flatten_tables;
+mod function_tables;
+mod gpu;
+mod intersections;
+mod layout;
+mod loop_cap;
+mod math_tables;
+mod parity;
+mod roots;
+mod shaders;
+mod shading_tables;
+mod single_rays;
+mod statistics;
+mod surfaces;
+mod traversal;
+mod traversal_gpu;
+mod triangles;

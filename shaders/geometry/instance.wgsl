@@ -62,7 +62,8 @@ fn surface_at(hit: Hit, origin: vec3<f32>, direction: vec3<f32>) -> Surface {
     let object_direction = transform_vector(object_from_world, direction);
     var point = transform_point(object_from_world, origin) + hit.t * object_direction;
     var normal = vec3<f32>(0.0, 1.0, 0.0);
-    var smooth_normal = vec3<f32>(0.0);
+    var is_smooth = false;
+    var smooth_normal = vec3<f32>(0.0, 1.0, 0.0);
     switch instances[hit.instance].shape {
         case SHAPE_SPHERE: {
             if HAS_SPHERE {
@@ -106,17 +107,9 @@ fn surface_at(hit: Hit, origin: vec3<f32>, direction: vec3<f32>) -> Surface {
                 let triangle = triangles[hit.primitive];
                 let b0 = 1.0 - hit.b1 - hit.b2;
                 point = b0 * triangle.p0 + hit.b1 * triangle.p1 + hit.b2 * triangle.p2;
-                let edge1 = triangle.p1 - triangle.p0;
-                let edge2 = triangle.p2 - triangle.p0;
-                normal = unit_vector(vec3<f32>(
-                    edge1.y * edge2.z - edge1.z * edge2.y,
-                    edge1.z * edge2.x - edge1.x * edge2.z,
-                    edge1.x * edge2.y - edge1.y * edge2.x,
-                ));
-                if (triangle.flags & TRIANGLE_SMOOTH) != 0u {
-                    smooth_normal = b0 * decode_octahedral(triangle.n0) + hit.b1 * decode_octahedral(triangle.n1)
-                        + hit.b2 * decode_octahedral(triangle.n2);
-                }
+                normal = triangle_geometric_normal(triangle.p0, triangle.p1, triangle.p2);
+                is_smooth = (triangle.flags & TRIANGLE_SMOOTH) != 0u;
+                smooth_normal = triangle_shading_normal(triangle.n0, triangle.n1, triangle.n2, hit.b1, hit.b2);
             }
         }
         default: {}
@@ -127,8 +120,7 @@ fn surface_at(hit: Hit, origin: vec3<f32>, direction: vec3<f32>) -> Surface {
     var geometric_normal = transform_normal(object_from_world, normal);
     geometric_normal = select(-geometric_normal, geometric_normal, entering);
     var shading_normal = geometric_normal;
-    // Normals that cancel out leave the face's own.
-    if HAS_MESH && (abs(smooth_normal.x) + abs(smooth_normal.y) + abs(smooth_normal.z) > 1e-3) {
+    if HAS_MESH && is_smooth {
         shading_normal = transform_normal(object_from_world, smooth_normal);
         let side = shading_normal.x * geometric_normal.x + shading_normal.y * geometric_normal.y
             + shading_normal.z * geometric_normal.z;

@@ -1,14 +1,20 @@
-//! Compressed wide hierarchies, built by obvhs, in the kernel's layout.
+//! Compressed wide hierarchies in the kernel's layout: binary trees, collapsed by obvhs.
 
+use super::binned;
 use crate::layout::Node;
-use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
-use obvhs::cwbvh::builder::build_cwbvh;
-use std::time::Duration;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 
-/// Groups of nodes that a ray can put aside; `shaders/geometry/bvh.wgsl` has the same constant. A ray puts aside at
-/// most one group a level, and one more where it enters a mesh.
+/// Groups that a ray can put aside; `shaders/geometry/bvh.wgsl` has the same constant. Where it enters a mesh it puts
+/// two aside, and [`build`] keeps each level of the hierarchy within half of the rest.
 pub const TRAVERSAL_STACK: u32 = 32;
+const MAX_STACK: u32 = (TRAVERSAL_STACK - 2) / 2;
+
+/// Primitives in a leaf, the most that the nodes can say.
+const MAX_LEAF: u32 = 3;
+
+/// Levels of surface-area splits; a tree that is so deep has boxes within boxes within boxes.
+const SAH_LEVELS: u32 = 48;
 
 /// Eight-way hierarchy; indices count from its own first node and primitive.
 #[derive(Debug, Default)]
@@ -22,13 +28,15 @@ pub struct Hierarchy {
 
 /// Builds the hierarchy over some boxes, which must be finite and small enough that their areas are too.
 pub fn build(boxes: &[Aabb]) -> Hierarchy {
-    if boxes.is_empty() {
-        return Hierarchy::default();
-    }
-    let built = build_cwbvh(boxes, BvhBuildParams::medium_build(), &mut Duration::default());
-    let nodes: Vec<Node> = built.nodes.iter().map(|node| bytemuck::cast(*node)).collect();
-    let depth = depth(&nodes);
-    Hierarchy { nodes, order: built.primitive_indices, depth }
+    let hierarchy = collapse(boxes, SAH_LEVELS);
+    // Halving by number makes trees whose depth is the logarithm of their size: 24 levels of two, 8 of eight.
+    if stack_need(&hierarchy.nodes) > MAX_STACK { collapse(boxes, 0) } else { hierarchy }
+}
+
+fn collapse(boxes: &[Aabb], sah_levels: u32) -> Hierarchy {
+    let wide = bvh2_to_cwbvh(&binned::build(boxes, sah_levels), MAX_LEAF, true, false);
+    let nodes: Vec<Node> = wide.nodes.iter().map(|node| bytemuck::cast(*node)).collect();
+    Hierarchy { depth: levels(&nodes).len() as u32, nodes, order: wide.primitive_indices }
 }
 
 /// Appends a hierarchy whose primitives begin at `first_primitive` of their buffer.
@@ -41,14 +49,30 @@ pub fn append(nodes: &mut Vec<Node>, hierarchy: &[Node], first_primitive: u32) {
     }));
 }
 
-fn depth(nodes: &[Node]) -> u32 {
-    let mut deepest = 0;
-    let mut pending = vec![(0u32, 1u32)];
-    while let Some((index, level)) = pending.pop() {
-        deepest = deepest.max(level);
-        let node = &nodes[index as usize];
-        let inner_children = (node.exponents_imask >> 24).count_ones();
-        pending.extend((0..inner_children).map(|i| (node.child_base + i, level + 1)));
+/// The inner children of a node, which lie side by side.
+fn inner_children(node: &Node) -> std::ops::Range<u32> {
+    node.child_base..node.child_base + (node.exponents_imask >> 24).count_ones()
+}
+
+/// Node indices, level by level.
+fn levels(nodes: &[Node]) -> Vec<Vec<u32>> {
+    let mut levels = Vec::new();
+    let mut level: Vec<u32> = (0..nodes.len().min(1) as u32).collect();
+    while !level.is_empty() {
+        let next = level.iter().flat_map(|&i| inner_children(&nodes[i as usize])).collect();
+        levels.push(std::mem::replace(&mut level, next));
     }
-    deepest
+    levels
+}
+
+/// The most groups that a ray puts aside, in whatever order it visits the children: one at each node whose remaining
+/// inner children have to wait.
+fn stack_need(nodes: &[Node]) -> u32 {
+    let mut needs = vec![0; nodes.len()];
+    for &i in levels(nodes).iter().rev().flatten() {
+        let children = inner_children(&nodes[i as usize]);
+        let waiting = u32::from(children.len() > 1);
+        needs[i as usize] = children.map(|child| needs[child as usize] + waiting).max().unwrap_or(0);
+    }
+    needs.first().copied().unwrap_or(0)
 }

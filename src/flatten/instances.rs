@@ -15,7 +15,7 @@ use glam::{DAffine3, DVec3, Vec4};
 use obvhs::aabb::Aabb;
 
 /// World coordinates beyond this have areas that single precision cannot add up.
-const MAX_COORDINATE: f64 = 1e15;
+const MAX_COORDINATE: f64 = 1e12;
 
 /// The upper level of the hierarchy and what it is over.
 pub struct BuiltInstances {
@@ -66,7 +66,7 @@ pub fn build(
         };
         if !(bounds.min.abs().max(bounds.max.abs()).max_element() <= MAX_COORDINATE) {
             return Err(Error::Scene(format!(
-                "node '{name}' reaches from {} to {}; coordinates must lie within ±1e15",
+                "node '{name}' reaches from {} to {}; coordinates must lie within ±1e12",
                 bounds.min, bounds.max
             )));
         }

@@ -59,11 +59,11 @@ pub fn build_all(placements: &[Placement]) -> Result<Meshes> {
 }
 
 /// Coordinates beyond this have areas that single precision cannot add up.
-const MAX_COORDINATE: f32 = 1e15;
+const MAX_COORDINATE: f32 = 1e12;
 
-/// Triangles whose normal, before it is scaled to unit length, has no component above this count as degenerate:
-/// single precision does not hold it.
-const MIN_NORMAL: f32 = 1e-35;
+/// Triangles whose edges are shorter than this, or whose corners lie on a line to within this share of their edges,
+/// have no normal that single precision can find.
+const MIN_EDGE: f32 = 1e-18;
 
 fn build(mesh: &Mesh) -> Result<BuiltMesh> {
     check(mesh)?;
@@ -113,7 +113,7 @@ fn check(mesh: &Mesh) -> Result<()> {
     for &corner in mesh.triangles.iter().flatten() {
         let position = mesh.positions[corner as usize];
         if !position.abs().cmple(Vec3::splat(MAX_COORDINATE)).all() {
-            return refuse(format!("vertex {corner} is at {position}; coordinates must lie within ±1e15"));
+            return refuse(format!("vertex {corner} is at {position}; coordinates must lie within ±1e12"));
         }
         if !uv(mesh, corner).is_finite() {
             return refuse(format!("vertex {corner} has a texture coordinate that is not finite"));
@@ -130,11 +130,13 @@ fn uv(mesh: &Mesh, corner: u32) -> Vec2 {
 fn pack(mesh: &Mesh, corners: [u32; 3], uv_min: Vec2, uv_extent: Vec2) -> Option<Triangle> {
     let [p0, p1, p2] = corners.map(|corner| mesh.positions[corner as usize]);
     // In single precision, since that is how the renderers compute it.
-    if !(p1 - p0).cross(p2 - p0).abs().cmpgt(Vec3::splat(MIN_NORMAL)).any() {
+    let (edge1, edge2) = (p1 - p0, p2 - p0);
+    let size = edge1.abs().max(edge2.abs()).max_element();
+    let normal = (edge1 / size).cross(edge2 / size);
+    if !(size > MIN_EDGE && normal.abs().max_element() > MIN_EDGE) {
         return None;
     }
-    let (q0, q1, q2) = (p0.as_dvec3(), p1.as_dvec3(), p2.as_dvec3());
-    let face_normal = (q1 - q0).cross(q2 - q0).try_normalize()?;
+    let face_normal = normal.as_dvec3().normalize();
 
     // A vertex without a normal of its own takes that of the face.
     let given = corners.map(|corner| mesh.normals.get(corner as usize)?.as_dvec3().try_normalize());
@@ -145,7 +147,7 @@ fn pack(mesh: &Mesh, corners: [u32; 3], uv_min: Vec2, uv_extent: Vec2) -> Option
 }
 
 /// A unit vector as a point of the unfolded octahedron, two 16-bit snorms, x in the low half (Cigolle et al.,
-/// "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 2014). Off by at most 1e-4.
+/// "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 2014). Off by less than 7e-5.
 pub fn encode_octahedral(normal: Vec3) -> u32 {
     let n = normal.as_dvec3();
     let n = n / (n.x.abs() + n.y.abs() + n.z.abs());

@@ -1,5 +1,6 @@
 //! From the scene graph to the buffers that both renderers read.
 
+mod binned;
 mod bounds;
 mod bvh;
 mod features;

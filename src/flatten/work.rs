@@ -9,14 +9,11 @@ pub const MAX_GLOSSY_SAMPLES: u32 = 4;
 /// Light samples at each deeper hit.
 pub const MAX_DEEP_LIGHT_SAMPLES: u32 = 8;
 
-/// What a pass costs beside its shadow rays, in shadow rays: the camera ray, and the tree of rays under it.
-const PASS_COST: u64 = 4;
-
-/// The work of each pass; `light_samples * pass_count == lights * shadow_count`.
+/// The work of each pass. Pass i takes the light samples from `i * light_samples` on, as far as there are any.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WorkPlan {
     pub pass_count: u32,
-    /// Shadow rays for each light over all passes: what was asked for, or more where the passes need it.
+    /// Shadow rays for each light over all passes.
     pub shadow_count: u32,
     pub light_samples: u32,
     pub deep_light_samples: u32,
@@ -41,38 +38,24 @@ impl WorkPlan {
     }
 }
 
-/// Plans `shadow` shadow rays for each of `lights` lights and `glossy` reflected rays, in at least `min_passes` passes.
+/// Plans `shadow` shadow rays for each of `lights` lights and `glossy` reflected rays, in the fewest passes that keep
+/// within [`MAX_LIGHT_SAMPLES`] and [`MAX_GLOSSY_SAMPLES`] each, but no fewer than `min_passes`.
 ///
-/// Every pass takes the same number of light samples, at most [`MAX_LIGHT_SAMPLES`] and at most an even share of what
-/// was asked for, and of all such plans the one with the least work is taken. Several lights with no common divisor
-/// can make it necessary to round `shadow` up.
+/// Asked for twice the passes of a plan that [can be halved](WorkPlan::can_halve), it gives a plan with about half the
+/// samples in each pass.
 pub fn plan_work(lights: u32, shadow: u32, glossy: u32, min_passes: u32) -> WorkPlan {
-    let min_passes = u64::from(min_passes.max(1));
-    let (lights, shadow, glossy) = (u64::from(lights), u64::from(shadow.max(1)), u64::from(glossy.max(1)));
-    let max_glossy = glossy.div_ceil(min_passes).min(u64::from(MAX_GLOSSY_SAMPLES));
-    let least_passes = min_passes.max(glossy.div_ceil(max_glossy));
-    let max_samples = (lights * shadow).div_ceil(min_passes).min(u64::from(MAX_LIGHT_SAMPLES));
-    let plans = (1..=max_samples).map(|samples| {
-        // The smallest count whose samples fill whole passes.
-        let step = samples / greatest_common_divisor(samples, lights);
-        let count = shadow.max((least_passes * samples).div_ceil(lights)).next_multiple_of(step);
-        let passes = lights * count / samples;
-        (passes * PASS_COST + lights * count, passes, count, samples)
-    });
-    let (_, passes, count, samples) = plans.min().unwrap_or((0, least_passes, shadow, 0));
+    let (shadow, glossy) = (shadow.max(1), glossy.max(1));
+    let light_samples = u64::from(lights) * u64::from(shadow);
+    let passes = light_samples
+        .div_ceil(u64::from(MAX_LIGHT_SAMPLES))
+        .max(u64::from(glossy.div_ceil(MAX_GLOSSY_SAMPLES)))
+        .max(u64::from(min_passes.max(1)))
+        .min(u64::from(u32::MAX));
     WorkPlan {
-        pass_count: clamp(passes),
-        shadow_count: clamp(count),
-        light_samples: clamp(samples),
-        deep_light_samples: clamp(lights.min(u64::from(MAX_DEEP_LIGHT_SAMPLES))),
-        glossy_samples: clamp(glossy.div_ceil(passes)),
+        pass_count: passes as u32,
+        shadow_count: shadow,
+        light_samples: light_samples.div_ceil(passes) as u32,
+        deep_light_samples: lights.min(MAX_DEEP_LIGHT_SAMPLES),
+        glossy_samples: u64::from(glossy).div_ceil(passes) as u32,
     }
-}
-
-fn greatest_common_divisor(a: u64, b: u64) -> u64 {
-    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
-}
-
-fn clamp(value: u64) -> u32 {
-    u32::try_from(value).unwrap_or(u32::MAX)
 }

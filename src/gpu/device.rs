@@ -187,6 +187,15 @@ impl Device {
         Err(refusal.unwrap_or_else(|| no_device(selector, adapters.iter().map(|(description, _)| description))))
     }
 
+    /// Opens every adapter, the best first, for `gpu-trace doctor`; those that cannot be opened say why.
+    pub fn open_each() -> Vec<(Description, DeviceLimits, Result<Device>)> {
+        let open = |(description, adapter): &(Description, wgpu::Adapter)| {
+            let device = open_adapter(description, adapter, u64::MAX);
+            (description.clone(), adapter.limits().into(), device)
+        };
+        adapters().iter().map(open).collect()
+    }
+
     pub fn description(&self) -> &Description {
         &self.description
     }

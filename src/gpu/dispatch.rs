@@ -83,6 +83,11 @@ impl Session {
         self.run(frame, &[(Dispatch::default(), 1)]).map(|_| ())
     }
 
+    /// Width and height of the picture, pixels.
+    pub fn image_size(&self) -> UVec2 {
+        self.counts.image_size
+    }
+
     /// Takes these rows of the picture in hand, with every sum 0.
     pub fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {
         if rows.start >= rows.end || rows.end > self.counts.image_size.y {
@@ -140,7 +145,7 @@ impl Session {
             return Err(format!("{} planes, {} lights", frame.plane_count, frame.light_count));
         }
         if (frame.has_root != 0 && nodes == 0) || frame.pass_count == 0 {
-            return Err(format!("has_root {} with {nodes} nodes, pass_count {}", frame.has_root, frame.pass_count));
+            return Err(format!("has_root {} with {nodes} nodes, {} passes", frame.has_root, frame.pass_count));
         }
         let rows = self.band.end - self.band.start;
         let blocks = image_size.x.div_ceil(BLOCK_EDGE) * rows.div_ceil(BLOCK_EDGE);

@@ -66,7 +66,7 @@ pub(super) fn compile(
     } else {
         // SAFETY: the checks left out are the bounds of array indices and of loops and the guards of integer
         // division. The kernels keep to them themselves: every loop in shaders/ has a bound of its own, divisors are
-        // counts that the host never sends as 0 (`Session::check` in dispatch.rs), and indices come from buffers
+        // counts that the host never sends as 0 (`check` in dispatch.rs), and indices come from buffers
         // that `flatten` wrote or are compared with counts in `Frame` and `Dispatch`, which `check` compares with
         // the sizes of the buffers. On GPUs the checks cost speed; `GpuOptions::checked` keeps them.
         #[allow(unsafe_code)]

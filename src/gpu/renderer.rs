@@ -84,8 +84,11 @@ impl Renderer for GpuRenderer {
     fn max_band_pixels(&self) -> u64 {
         let limits = self.device.limits();
         let bytes = limits.storage_binding.min(limits.buffer);
-        let blocks = u64::from(limits.workgroups);
-        (bytes / size_of::<FilmPixel>() as u64).min(blocks * u64::from(BLOCK_EDGE * BLOCK_EDGE))
+        // One dispatch can take the whole band. Rows of blocks are counted, as the last block of a row may hang over.
+        let width = self.session.as_ref().map_or(BLOCK_EDGE, |session| session.image_size().x).max(1);
+        let block_rows = u64::from(limits.workgroups / width.div_ceil(BLOCK_EDGE));
+        let in_one_dispatch = block_rows * u64::from(BLOCK_EDGE) * u64::from(width);
+        (bytes / size_of::<FilmPixel>() as u64).min(in_one_dispatch)
     }
 
     fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {

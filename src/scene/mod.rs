@@ -8,6 +8,8 @@ mod graph;
 mod light;
 mod material;
 mod mesh;
+mod obj;
+mod polygons;
 
 pub use camera::Camera;
 pub use geometry::{Geometry, Shape};
@@ -15,6 +17,8 @@ pub use graph::{MaterialId, Node, NodeId, SceneGraph};
 pub use light::{Light, LightExtent};
 pub use material::Material;
 pub use mesh::Mesh;
+pub use obj::load_obj;
+pub use polygons::PolygonMesh;
 
 use glam::Vec3;
 use std::path::PathBuf;

@@ -1,1 +1,104 @@
+//! Runs scene scripts: the only place that knows Lua.
+//!
+//! A scene is a Lua 5.4 program that builds a graph of nodes with the `gr.*` functions and asks for pictures with
+//! `gr.render`. It runs in a sandbox ([`sandbox`]) under a memory and an instruction limit ([`guard`]); what it may
+//! read is decided by [`search`]. Each `gr.*` function is a thin mapping from its positional arguments
+//! ([`arguments`]) onto the named descriptions of [`crate::scene`].
 
+mod api;
+mod arguments;
+mod conventions;
+mod diagnostics;
+mod guard;
+mod modules;
+mod sandbox;
+mod search;
+mod state;
+
+pub use conventions::{ConventionOverrides, TransformOrder, ViewConvention};
+
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use guard::Guard;
+use state::State;
+use std::cell::RefCell;
+use std::path::Path;
+use std::rc::Rc;
+
+/// What a script is told, and how much it may use.
+#[derive(Clone, Debug)]
+pub struct ScriptOptions {
+    /// What `gr.frame_cmd()` returns.
+    pub frame: u32,
+    /// Seeds `math.random`, and becomes the seed of the scenes.
+    pub seed: u32,
+    /// Conventions that win over those of the script.
+    pub conventions: ConventionOverrides,
+    /// Bytes that the script's values, nodes and meshes may take together.
+    pub memory_limit: usize,
+    /// Lua virtual machine instructions that the script may execute. A single call of a library function counts as
+    /// one instruction, however long it takes.
+    pub instruction_limit: u64,
+}
+
+impl ScriptOptions {
+    /// Room for some five million triangles given as Lua tables.
+    pub const DEFAULT_MEMORY_LIMIT: usize = 2 << 30;
+    /// About five seconds of an empty loop; a million triangles computed one by one take a tenth of it.
+    pub const DEFAULT_INSTRUCTION_LIMIT: u64 = 2_000_000_000;
+}
+
+impl Default for ScriptOptions {
+    fn default() -> Self {
+        ScriptOptions {
+            frame: 0,
+            seed: 0,
+            conventions: ConventionOverrides::default(),
+            memory_limit: Self::DEFAULT_MEMORY_LIMIT,
+            instruction_limit: Self::DEFAULT_INSTRUCTION_LIMIT,
+        }
+    }
+}
+
+/// What a script did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ScriptSummary {
+    /// Calls of `gr.render` that went well.
+    pub pictures: u32,
+    /// What was said through `log::warn!` while it ran, in order.
+    pub warnings: Vec<String>,
+}
+
+/// Runs the script and calls `render` for every `gr.render` in it, in order; after each the script goes on.
+///
+/// File names in messages are given as `path` was. Relative output paths are kept as the script gave them.
+///
+/// # Errors
+/// [`Error::File`] if the script cannot be read; [`Error::Script`] if it fails or passes a limit. An error of `render`
+/// ends the script, even inside `pcall`, and is returned as it is.
+pub fn run_scene(
+    path: &Path,
+    options: &ScriptOptions,
+    render: &mut dyn FnMut(Scene) -> Result<()>,
+) -> Result<ScriptSummary> {
+    let source = std::fs::read(path).map_err(|source| Error::file("read the scene", path, source))?;
+    let guard = Rc::new(Guard::new(options.memory_limit, options.instruction_limit));
+    let state = Rc::new(RefCell::new(State::new(path, options)));
+    let script = sandbox::Script { name: path.display().to_string(), source: &source };
+    let outcome = sandbox::run(&script, &guard, &state, render);
+    let mut state = state.borrow_mut();
+    outcome.map(|()| ScriptSummary { pictures: state.pictures, warnings: std::mem::take(&mut state.warnings) })
+}
+
+/// Runs the script and collects the scenes that it asks to render, in order.
+///
+/// # Errors
+/// As [`run_scene`].
+pub fn load_scene(path: &Path, options: &ScriptOptions) -> Result<Vec<Scene>> {
+    let mut scenes = Vec::new();
+    run_scene(path, options, &mut |scene| {
+        scenes.push(scene);
+        Ok(())
+    })?;
+    Ok(scenes)
+}

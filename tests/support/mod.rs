@@ -2,6 +2,7 @@
 
 pub mod function_table;
 pub mod oracle;
+pub mod placed;
 pub mod rays;
 
 use glam::{DAffine3, DVec3, Vec3};

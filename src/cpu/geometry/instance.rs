@@ -7,7 +7,7 @@ use super::hit::{Hit, MISS, ShapeHit, Surface};
 use super::plane::{plane_normal, plane_project};
 use super::sphere::{sphere_intersect, sphere_normal, sphere_project};
 use super::torus::{torus_intersect, torus_normal, torus_project};
-use super::triangle::decode_octahedral;
+use super::triangle::{triangle_geometric_normal, triangle_shading_normal};
 use crate::cpu::bindings::Bindings;
 use crate::layout::{
     AffineRows, SHAPE_CONE, SHAPE_CUBE, SHAPE_CYLINDER, SHAPE_MESH, SHAPE_PLANE, SHAPE_SPHERE, SHAPE_TORUS,
@@ -71,7 +71,8 @@ pub fn surface_at(scene: &Bindings, hit: Hit, origin: Vec3, direction: Vec3) -> 
     let object_direction = transform_vector(object_from_world, direction);
     let mut point = transform_point(object_from_world, origin) + hit.t * object_direction;
     let mut normal = Vec3::Y;
-    let mut smooth_normal = Vec3::ZERO;
+    let mut is_smooth = false;
+    let mut smooth_normal = Vec3::Y;
     match instance.shape {
         SHAPE_SPHERE => {
             point = sphere_project(point, hit.primitive);
@@ -102,18 +103,9 @@ pub fn surface_at(scene: &Bindings, hit: Hit, origin: Vec3, direction: Vec3) -> 
             let triangle = &scene.triangles[hit.primitive as usize];
             let b0 = 1.0 - hit.b1 - hit.b2;
             point = b0 * triangle.p0 + hit.b1 * triangle.p1 + hit.b2 * triangle.p2;
-            let edge1 = triangle.p1 - triangle.p0;
-            let edge2 = triangle.p2 - triangle.p0;
-            normal = unit_vector(Vec3::new(
-                edge1.y * edge2.z - edge1.z * edge2.y,
-                edge1.z * edge2.x - edge1.x * edge2.z,
-                edge1.x * edge2.y - edge1.y * edge2.x,
-            ));
-            if triangle.flags & TRIANGLE_SMOOTH != 0 {
-                smooth_normal = b0 * decode_octahedral(triangle.n0)
-                    + hit.b1 * decode_octahedral(triangle.n1)
-                    + hit.b2 * decode_octahedral(triangle.n2);
-            }
+            normal = triangle_geometric_normal(triangle.p0, triangle.p1, triangle.p2);
+            is_smooth = triangle.flags & TRIANGLE_SMOOTH != 0;
+            smooth_normal = triangle_shading_normal(triangle.n0, triangle.n1, triangle.n2, hit.b1, hit.b2);
         }
         _ => {}
     }
@@ -123,8 +115,7 @@ pub fn surface_at(scene: &Bindings, hit: Hit, origin: Vec3, direction: Vec3) -> 
     let mut geometric_normal = transform_normal(object_from_world, normal);
     geometric_normal = if entering { geometric_normal } else { -geometric_normal };
     let mut shading_normal = geometric_normal;
-    // Normals that cancel out leave the face's own.
-    if smooth_normal.x.abs() + smooth_normal.y.abs() + smooth_normal.z.abs() > 1e-3 {
+    if is_smooth {
         shading_normal = transform_normal(object_from_world, smooth_normal);
         let side = shading_normal.x * geometric_normal.x
             + shading_normal.y * geometric_normal.y

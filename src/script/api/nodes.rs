@@ -1,0 +1,66 @@
+//! `gr.node`, `gr.joint`, and what hangs nodes together.
+
+use super::Function;
+use crate::scene::{Geometry, NodeId};
+use crate::script::arguments::{Call, Failure, NodeHandle, Outcome};
+use crate::script::state::State;
+use glam::{DQuat, DVec3};
+use mlua::Value;
+
+pub(super) const FUNCTIONS: &[Function] = &[
+    ("gr.node", 1, node),
+    ("gr.joint", 3, joint),
+    ("gr.add_child", 2, add_child),
+    ("gr.set_material", 2, set_material),
+];
+
+/// Makes a node that is named by argument 1, and its handle.
+pub(super) fn make_node(call: &Call, geometry: Option<Geometry>, joint: Option<DQuat>) -> Outcome<Value> {
+    let name = call.name(0)?;
+    call.context.guard.charge_memory(call.lua, State::NODE_BYTES + name.len())?;
+    let id = call.state_mut().add_node(name, geometry, joint);
+    Ok(Value::UserData(call.lua.create_userdata(NodeHandle(id))?))
+}
+
+/// `gr.node(name)`: a transform without a shape.
+fn node(call: &Call) -> Outcome<Value> {
+    make_node(call, None, None)
+}
+
+/// `gr.joint(name, {min, init, max}, {min, init, max})`: a node turned by its two init angles, in degrees, about x and
+/// then y. The ranges are for programs that move joints.
+fn joint(call: &Call) -> Outcome<Value> {
+    call.name(0)?;
+    let [_, about_x, _] = call.tuple::<3>(1)?;
+    let [_, about_y, _] = call.tuple::<3>(2)?;
+    let x = DQuat::from_axis_angle(DVec3::X, about_x.to_radians());
+    let y = DQuat::from_axis_angle(DVec3::Y, about_y.to_radians());
+    make_node(call, None, Some(y * x))
+}
+
+/// `parent:add_child(child)`. A node may have several parents: each is an instance of it.
+fn add_child(call: &Call) -> Outcome<Value> {
+    let parent = call.node(0)?;
+    let child = call.node(1)?;
+    call.context.guard.charge_memory(call.lua, size_of::<NodeId>())?;
+    if !call.state_mut().add_child(parent, child) {
+        let state = call.state();
+        let [parent, child] = [parent, child].map(|id| state.graph().node(id).name.clone());
+        let message =
+            format!("'{child}' already has '{parent}' below it, or is the same node; a node cannot contain itself");
+        return Err(Failure::Argument { index: 1, message });
+    }
+    Ok(Value::Nil)
+}
+
+/// `node:set_material(material)`, on nodes with a shape. Children do not inherit it.
+fn set_material(call: &Call) -> Outcome<Value> {
+    let node = call.node(0)?;
+    let material = call.material(1)?;
+    if call.state().graph().node(node).geometry.is_none() {
+        let name = call.state().graph().node(node).name.clone();
+        return Err(Failure::Call(format!("'{name}' has no shape that could have a material; set it on the shapes")));
+    }
+    call.state_mut().set_material(node, material);
+    Ok(Value::Nil)
+}

@@ -1,0 +1,31 @@
+//! What a script asks of, and tells, the program.
+
+use super::Function;
+use crate::script::arguments::{Call, Failure, Outcome};
+use mlua::Value;
+
+pub(super) const FUNCTIONS: &[Function] = &[("gr.frame_cmd", 0, frame_cmd), ("gr.conventions", 1, conventions)];
+
+/// `gr.frame_cmd()`: the number of the frame that the command line asks for, 0 in a plain run.
+fn frame_cmd(call: &Call) -> Outcome<Value> {
+    Ok(Value::Integer(i64::from(call.state().frame)))
+}
+
+/// `gr.conventions{view=, transforms=, specular=, sample=}`, any of them. Transforms change for the whole scene, the
+/// others for the pictures that follow.
+fn conventions(call: &Call) -> Outcome<Value> {
+    let expected = "a table such as {view=\"direction\"}";
+    let mut stated = call.state().conventions.script;
+    for pair in call.table(0, expected)?.pairs::<Value, Value>() {
+        let (key, value) = pair?;
+        let (Value::String(key), Value::String(value)) = (&key, &value) else {
+            let message = format!("expected {expected}, got {} = {} in it", call.describe(&key), call.describe(&value));
+            return Err(Failure::Argument { index: 0, message });
+        };
+        stated
+            .set(&key.to_string_lossy(), &value.to_string_lossy())
+            .map_err(|message| Failure::Argument { index: 0, message })?;
+    }
+    call.state_mut().change_conventions(|conventions| conventions.script = stated);
+    Ok(Value::Nil)
+}
