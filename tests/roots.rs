@@ -1,5 +1,6 @@
 //! The root finders alone, against f64.
 
+use crate::support::rays::config;
 use gpu_trace::cpu::math::roots::{TINY, cube_root, quadratic_roots, safe_reciprocal};
 use proptest::prelude::*;
 
@@ -9,7 +10,7 @@ fn root_error(root: f32, exact: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(4000) })]
+    #![proptest_config(config(4000))]
 
     /// Coefficients from chosen roots, from far apart to nearly equal, so that the discriminant is known.
     #[test]

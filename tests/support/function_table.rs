@@ -2,8 +2,8 @@
 //!
 //! ```ignore
 //! let table = FunctionTable::new(&["math/roots.wgsl"], "results[0].x = bitcast<u32>(cube_root(f32_at(0u, 0u)));");
-//! let gpu: Vec<[Lane; 1]> = table.evaluate(&inputs);              // inputs: &[[Lane; I]]
-//! let worst = worst_difference(&gpu, &cpu, [Compare::Floats]);
+//! let twins = Twins::new(inputs, &table, |row| [floats([cube_root(f32::from_bits(row[0][0])), 0.0, 0.0, 0.0])]);
+//! twins.assert_close("cube_root", [Compare::Floats], 0);
 //! ```
 //! Rows are made of lanes of four words; `floats` and `words` make lanes from numbers. In WGSL the body reads
 //! `inputs[i]` (vec4<u32>) or `floats_at(i)` (vec4<f32>), `vec3_at(i)`, `f32_at(i, component)`, and writes
@@ -13,6 +13,12 @@ use std::sync::OnceLock;
 
 /// Four words of a row: integers, or the bits of floats.
 pub type Lane = [u32; 4];
+
+/// The first three words of a lane.
+pub fn lane_vec3(lane: Lane) -> glam::Vec3 {
+    let [x, y, z, _] = lane.map(f32::from_bits);
+    glam::Vec3::new(x, y, z)
+}
 
 pub fn floats(values: [f32; 4]) -> Lane {
     values.map(f32::to_bits)
@@ -42,6 +48,7 @@ fn gpu() -> &'static Gpu {
         let adapter = request(true).or_else(|_| request(false)).unwrap_or_else(|error| {
             panic!("no Vulkan device: apt-get install mesa-vulkan-drivers libvulkan1 ({error})")
         });
+        println!("function tables on {:?}", adapter.get_info());
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
             .expect("the device can be opened");
         Gpu { device, queue }
@@ -137,6 +144,40 @@ fn function_table(@builtin(global_invocation_id) id: vec3<u32>) {{
         let view = read_buffer.get_mapped_range(..).expect("the results are mapped");
         let lanes: Vec<Lane> = bytemuck::pod_collect_to_vec(&view);
         lanes.as_chunks::<O>().0.to_vec()
+    }
+}
+
+/// The inputs of a table with the results of both twins.
+pub struct Twins<const I: usize, const O: usize> {
+    pub inputs: Vec<[Lane; I]>,
+    pub gpu: Vec<[Lane; O]>,
+    pub cpu: Vec<[Lane; O]>,
+}
+
+impl<const I: usize, const O: usize> Twins<I, O> {
+    pub fn new(inputs: Vec<[Lane; I]>, gpu: &FunctionTable, cpu: impl Fn(&[Lane; I]) -> [Lane; O]) -> Self {
+        let (gpu, cpu) = (gpu.evaluate(&inputs), inputs.iter().map(cpu).collect());
+        Twins { inputs, gpu, cpu }
+    }
+
+    pub fn difference(&self, how: [Compare; O]) -> Difference {
+        worst_difference(&self.gpu, &self.cpu, how)
+    }
+
+    /// Fails where the twins are more than `limit` ulps apart.
+    pub fn assert_close(&self, name: &str, how: [Compare; O], limit: u32) {
+        let Difference { ulps, row, rows } = self.difference(how);
+        println!("{name}: {} rows, {rows} differ, by {ulps} ulps at most", self.inputs.len());
+        let print = |lanes: &[Lane]| {
+            format!("{:?} = {lanes:x?}", lanes.iter().map(|lane| lane.map(f32::from_bits)).collect::<Vec<_>>())
+        };
+        assert!(
+            ulps <= limit,
+            "{name}: {ulps} ulps apart in row {row}: inputs {}\n gpu {}\n cpu {}",
+            print(&self.inputs[row]),
+            print(&self.gpu[row]),
+            print(&self.cpu[row]),
+        );
     }
 }
 

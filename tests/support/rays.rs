@@ -3,7 +3,30 @@
 use super::oracle::Solid;
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{RngSeed, TestRunner};
 use std::f64::consts::{PI, TAU};
+
+/// The same cases in every run, `cases` of them; PROPTEST_CASES asks for more.
+pub fn config(cases: u32) -> ProptestConfig {
+    let default = ProptestConfig::default();
+    let asked = if std::env::var_os("PROPTEST_CASES").is_some() { default.cases } else { 0 };
+    let cases = cases.max(asked);
+    ProptestConfig {
+        cases,
+        max_global_rejects: cases,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(2),
+        ..default
+    }
+}
+
+/// So many values, the same in every run.
+pub fn draw<T>(strategy: impl Strategy<Value = T>, count: usize) -> Vec<T> {
+    let mut runner = TestRunner::new(config(1));
+    let mut next = || strategy.new_tree(&mut runner).expect("no rejections").current();
+    (0..count).map(|_| next()).collect()
+}
 
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
