@@ -27,14 +27,18 @@ local function place(node, size, turn, x, y, z)
 end
 
 local clay = bunny(gr.material({ 0.72, 0.42, 0.28 }, { 0.15, 0.15, 0.15 }, 20))
-local gold = bunny(gr.refl_material({ 0.50, 0.33, 0.10 }, { 0.8, 0.7, 0.4 }, 60, 0.5))
+local gold = bunny(gr.refl_material({ 0.62, 0.38, 0.07 }, { 0.9, 0.75, 0.4 }, 50, 0.35))
 local glass = bunny(gr.refl_material({ 0, 0, 0 }, { 0.7, 0.7, 0.7 }, 200, 1, 0, 1.5))
 local porcelain = bunny(gr.refl_material({ 0.78, 0.79, 0.80 }, { 0.6, 0.6, 0.6 }, 120, 0.08))
 local teal = bunny(gr.material({ 0.20, 0.52, 0.52 }, { 0.3, 0.3, 0.3 }, 40))
 
 add(gr.plane('floor'), gr.material({ 0.60, 0.59, 0.57 }, { 0, 0, 0 }, 1))
 
--- A mirror in a wooden frame, leaning back a little.
+local wall = add(gr.plane('wall'), gr.material({ 0.36, 0.46, 0.44 }, { 0, 0, 0 }, 1))
+wall:rotate('x', 90)
+wall:translate(0, 0, -2.6)
+
+-- A mirror in a wooden frame, hung so that it leans forward.
 local frame = gr.node('frame')
 local wood = gr.material({ 0.36, 0.22, 0.13 }, { 0.2, 0.2, 0.2 }, 30)
 local function slab(material, x, y, z, w, h, d)
@@ -45,10 +49,10 @@ local function slab(material, x, y, z, w, h, d)
   box:translate(x, y, z)
   frame:add_child(box)
 end
-slab(wood, 0, 0, -0.06, 5.2, 2.6, 0.1)
-slab(gr.refl_material({ 0.03, 0.03, 0.03 }, { 0, 0, 0 }, 1, 0.9), 0, 0.12, 0, 4.96, 2.36, 0.04)
-frame:rotate('x', -5)
-frame:translate(0, 0, -1.5)
+slab(wood, 0, 0, -0.06, 4.2, 1.9, 0.1)
+slab(gr.refl_material({ 0.03, 0.03, 0.03 }, { 0, 0, 0 }, 1, 0.9), 0, 0.1, 0, 4.0, 1.7, 0.04)
+frame:rotate('x', 12)
+frame:translate(0, 0.75, -2.35)
 scene:add_child(frame)
 
 local stand = add(gr.cylinder('stand'), gr.material({ 0.30, 0.31, 0.34 }, { 0.4, 0.4, 0.4 }, 60))
@@ -65,10 +69,10 @@ for i = 0, 6 do
   place(litter[1 + i % 3], 0.42, 60 * i, -2.6 * math.cos(angle), 0, 0.2 + 1.7 * math.sin(angle))
 end
 
-local key = gr.light({ -3.5, 6, 4.5 }, { 0.72, 0.69, 0.62 }, { 1, 0, 0 })
+local key = gr.light({ -3.5, 6, 4.5 }, { 0.88, 0.85, 0.78 }, { 1, 0, 0 })
 local fill = gr.light({ 5, 4, 3 }, { 0.24, 0.26, 0.32 }, { 1, 0, 0 })
 
 gr.render(scene, 'bunny.png', 640, 360,
   { 0.2, 2.0, 7.0 }, { 0, 0.8, 0 }, { 0, 1, 0 }, 30,
-  { 0.24, 0.24, 0.27 }, { key, fill },
+  { 0.28, 0.28, 0.31 }, { key, fill },
   3, 1, 2) -- AA, GLOSSY, SHADOW

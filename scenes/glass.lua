@@ -24,14 +24,18 @@ for i, colour in ipairs({ { 0.86, 0.85, 0.82 }, { 0.34, 0.44, 0.50 } }) do
   tiles[i]:set_material(gr.material(colour, { 0.1, 0.1, 0.1 }, 20))
   tiles[i]:scale(0.77, 0.02, 0.77)
 end
-for row = -9, 4 do
-  for column = -8, 7 do
+for row = -7, 6 do
+  for column = -9, 8 do
     local place = gr.node('place')
     place:add_child(tiles[1 + (row + column) % 2])
     place:translate(0.8 * column, 0, 0.8 * row)
     scene:add_child(place)
   end
 end
+
+local wall = add(gr.plane('wall'), gr.material({ 0.66, 0.69, 0.72 }, { 0, 0, 0 }, 1))
+wall:rotate('x', 90)
+wall:translate(0, 0, -5.2)
 
 local colours = {
   { 0.82, 0.22, 0.20 }, { 0.93, 0.58, 0.16 }, { 0.93, 0.82, 0.28 }, { 0.36, 0.68, 0.32 },
@@ -46,8 +50,7 @@ end
 add(gr.nh_sphere('ball', { -1.75, 0.97, 0.25 }, 0.95), glass)
 
 -- Water: media nest by themselves, as a ray knows what it is in.
-local block = add(gr.nh_box('water', { 0.25, 0.03, -0.75 }, 1.7), water)
-local _ = block
+add(gr.nh_box('water', { 0.25, 0.03, -0.75 }, 1.7), water)
 add(gr.nh_sphere('glass in water', { 0.82, 0.62, 0.2 }, 0.42), glass)
 add(gr.nh_sphere('air in water', { 1.52, 1.12, 0.0 }, 0.3), air)
 -- Shapes do not let light through to what they hold, so the berries have a light of their own in the water.
@@ -57,9 +60,9 @@ add(gr.nh_sphere('berry', { 1.2, 0.17, 0.7 }, 0.12), gr.material({ 0.95, 0.75, 0
 local ring = add(gr.torus('ring', 0.5, 0.17), glass)
 ring:translate(-0.45, 0.2, 1.75)
 
-local key = gr.light({ -4, 8, 5 }, { 0.62, 0.60, 0.55 }, { 1, 0, 0 })
+local key = gr.light({ -4, 8, 5 }, { 0.72, 0.70, 0.65 }, { 1, 0, 0 })
 local fill = gr.light({ 6, 5, 6 }, { 0.22, 0.24, 0.28 }, { 1, 0, 0 })
-local inside = gr.light({ 1.0, 1.5, 0.75 }, { 0.5, 0.5, 0.5 }, { 1, 0, 0.4 })
+local inside = gr.light({ 1.0, 1.5, 0.75 }, { 0.6, 0.6, 0.6 }, { 1, 0, 0.4 })
 
 gr.render(scene, 'glass.png', 640, 360,
   { -0.3, 2.3, 7.2 }, { 0.05, 0.85, 0 }, { 0, 1, 0 }, 34,

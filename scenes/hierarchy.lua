@@ -5,7 +5,7 @@
 
 local paint = gr.material({ 0.80, 0.30, 0.16 }, { 0.5, 0.5, 0.5 }, 60)
 local steel = gr.refl_material({ 0.30, 0.31, 0.33 }, { 0.7, 0.7, 0.7 }, 90, 0.35)
-local glow = gr.material({ 3, 2.7, 2 }, { 0, 0, 0 }, 1)
+local glow = gr.material({ 5, 4.5, 3.4 }, { 0, 0, 0 }, 1)
 
 local function part(shape, material)
   shape:set_material(material)
@@ -88,14 +88,14 @@ local function lamp(x, lift, shoulder, elbow, neck)
 end
 
 local scene = gr.node('scene')
-scene:add_child(part(gr.plane('table'), gr.refl_material({ 0.50, 0.44, 0.38 }, { 0, 0, 0 }, 1, 0.10)))
+scene:add_child(part(gr.plane('table'), gr.refl_material({ 0.58, 0.50, 0.42 }, { 0, 0, 0 }, 1, 0.10)))
 
 local wall = part(gr.plane('wall'), gr.material({ 0.42, 0.46, 0.52 }, { 0, 0, 0 }, 1))
 wall:rotate('x', 90)
-wall:translate(0, 0, -2.6)
+wall:translate(0, 0, -3.2)
 scene:add_child(wall)
 
-local lights = { gr.light({ -6, 9, 10 }, { 0.34, 0.36, 0.42 }, { 1, 0, 0 }) }
+local lights = { gr.light({ -6, 9, 10 }, { 0.38, 0.40, 0.46 }, { 1, 0, 0 }) }
 local poses = { -- x, height of the hop, shoulder, elbow, neck
   { -4.4, 0.00, -20, 75, 85 },
   { -2.7, 0.00, -58, 118, 72 },
@@ -106,10 +106,10 @@ local poses = { -- x, height of the hop, shoulder, elbow, neck
 for _, pose in ipairs(poses) do
   local node, under_bulb = lamp(table.unpack(pose))
   scene:add_child(node)
-  table.insert(lights, gr.light(under_bulb, { 0.85, 0.72, 0.50 }, { 0.6, 0, 0.55 }))
+  table.insert(lights, gr.light(under_bulb, { 1.1, 0.92, 0.62 }, { 0.6, 0, 0.5 }))
 end
 
 gr.render(scene, 'hierarchy.png', 640, 360,
-  { 0.1, 2.6, 9.6 }, { 0.1, 1.15, 0 }, { 0, 1, 0 }, 34,
-  { 0.14, 0.14, 0.17 }, lights,
+  { -0.3, 2.5, 9.8 }, { -0.3, 1.2, 0 }, { 0, 1, 0 }, 30,
+  { 0.20, 0.20, 0.23 }, lights,
   3) -- AA

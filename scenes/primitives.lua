@@ -9,7 +9,7 @@ gr.conventions { transforms = 'pre' }
 local scene = gr.node('scene')
 
 local floor = gr.plane('floor')
-floor:set_material(gr.material({ 0.55, 0.56, 0.60 }, { 0, 0, 0 }, 1))
+floor:set_material(gr.material({ 0.62, 0.63, 0.67 }, { 0, 0, 0 }, 1))
 scene:add_child(floor)
 
 local octahedron = gr.mesh('octahedron',
@@ -43,7 +43,7 @@ local shapes = {
 
 for column, shape in ipairs(shapes) do
   local node, colour, place, distort = table.unpack(shape)
-  local x = 1.3 * (column - 4)
+  local x = 1.25 * (column - 4)
   node:set_material(gr.material(colour, { 0.4, 0.4, 0.4 }, 50))
   place(node)
 
@@ -55,7 +55,7 @@ for column, shape in ipairs(shapes) do
   local back = gr.node('back') -- the same geometry node again
   back:add_child(node)
   distort(back)
-  back:translate(x * 1.12, 0, -1.3)
+  back:translate(x * 1.1, 0, -1.7)
   scene:add_child(back)
 end
 
@@ -71,10 +71,10 @@ for i = -6, 6 do
   scene:add_child(bead)
 end
 
-local key = gr.light({ -5, 8, 7 }, { 0.75, 0.72, 0.66 }, { 1, 0, 0 })
+local key = gr.light({ -6, 10, 8 }, { 0.88, 0.85, 0.78 }, { 1, 0, 0 })
 local fill = gr.light({ 7, 5, 6 }, { 0.20, 0.22, 0.28 }, { 1, 0, 0 })
 
 gr.render(scene, 'primitives.png', 640, 360,
-  { 0, 3.6, 9.2 }, { 0, 0.62, 0 }, { 0, 1, 0 }, 31,
-  { 0.25, 0.25, 0.28 }, { key, fill },
+  { 0, 4.9, 10.2 }, { 0, 0.55, 0 }, { 0, 1, 0 }, 28,
+  { 0.28, 0.28, 0.31 }, { key, fill },
   3, 1, 2) -- AA, GLOSSY, SHADOW

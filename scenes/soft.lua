@@ -19,7 +19,7 @@ local tints = {
 }
 for i, tint in ipairs(tints) do
   local gloss = 0.22 * (i - 1)
-  local ball = gr.nh_sphere('ball', { 1.45 * (i - 3), 0.7, -1.1 * (i - 3) }, 0.7)
+  local ball = gr.nh_sphere('ball', { 1.4 * (i - 3), 0.7, -1.0 * (i - 3) }, 0.7)
   add(ball, gr.refl_material(tint, { 0.5, 0.5, 0.5 }, 160 / i ^ 2, 0.7, gloss))
 end
 
@@ -36,9 +36,9 @@ for i = 0, 4 do
   add(bead, gr.material({ 0.92, 0.80 - 0.14 * i, 0.25 }, { 0.4, 0.4, 0.4 }, 50))
 end
 
-local key = gr.light({ 2.5, 5, 3.5 }, { 0.80, 0.77, 0.70 }, { 1, 0, 0 })
+local key = gr.light({ 2.5, 5, 3.5 }, { 0.95, 0.92, 0.84 }, { 1, 0, 0 })
 
 gr.render(scene, 'soft.png', 480, 270,
-  { 0, 2.4, 7.5 }, { 0, 0.7, 0 }, { 0, 1, 0 }, 34,
-  { 0.28, 0.28, 0.31 }, { key },
-  2, 3, 3, 4, 0.35) -- AA, GLOSSY, SHADOW, DOF, LENS
+  { -0.2, 3.3, 7.6 }, { -0.2, 0.5, 0 }, { 0, 1, 0 }, 35,
+  { 0.31, 0.31, 0.34 }, { key },
+  2, 3, 3, 4, 0.22) -- AA, GLOSSY, SHADOW, DOF, LENS

@@ -28,8 +28,7 @@
 //!         let (mut renderer, device) = device::open_renderer(&device::DeviceChoice::Auto, false)?;
 //!         let options = render::RenderOptions::whole(&buffers);
 //!         let rendered = render::render(buffers, renderer.as_mut(), &options, &mut render::Unattended)?;
-//!         let picture = rendered.film.resolve(scene.transfer, scene.background.transparent);
-//!         film::write_picture(&picture, &scene.output)?;
+//!         film::write_picture(&rendered.film, &scene.output, scene.transfer, scene.background.transparent)?;
 //!         println!("{}: {} rays on {}", scene.output.display(), rendered.tally.total_rays(), device.name);
 //!     }
 //!     Ok(())

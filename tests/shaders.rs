@@ -1,8 +1,9 @@
 //! Linking and specialising the WGSL program, and where its errors are said to lie.
 
 use gpu_trace::Error;
-use gpu_trace::flatten::FeatureSet;
+use gpu_trace::flatten::{FeatureSet, flatten};
 use gpu_trace::gpu::probe::LOOP_PROBE;
+use gpu_trace::script::{ScriptOptions, load_scene};
 use gpu_trace::shader::{PARTS, Part, Program, RENDER_ENTRY_POINT};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -149,4 +150,24 @@ fn every_override_is_a_feature() {
     assert_eq!(declared, set);
     assert!(FeatureSet::ALL_ON.overrides().into_iter().all(|(_, value)| value));
     assert!(FeatureSet::ALL_OFF.overrides().into_iter().all(|(_, value)| !value));
+}
+
+/// The permutations that users meet first.
+#[test]
+fn the_program_validates_with_the_features_of_every_scene() {
+    let program = Program::renderer().unwrap();
+    let mut permutations = BTreeSet::new();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "lua") {
+            let scenes = load_scene(&path, &ScriptOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+            for scene in scenes {
+                let features = flatten(&scene).unwrap_or_else(|error| panic!("{error}")).features;
+                program.validate_permutation(RENDER_ENTRY_POINT, &features.overrides()).unwrap();
+                permutations.insert(features.overrides());
+            }
+        }
+    }
+    assert!(permutations.len() >= 4, "the scenes have only {} permutations", permutations.len());
 }

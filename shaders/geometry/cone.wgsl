@@ -10,10 +10,8 @@ const CONE_CAP: u32 = 1u;
 
 fn cone_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> ShapeHit {
     let d = direction;
-    // <o, o> loses its digits far out along the side: start from the closest approach to the apex instead.
-    let distance2 = origin.x * origin.x + origin.y * origin.y + origin.z * origin.z;
-    let approach = -(origin.x * d.x + origin.y * d.y + origin.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
-    let shift = select(0.0, approach, distance2 > 4.0);
+    // <o, o> loses its digits out along the side: start from the closest approach to the apex instead.
+    let shift = -(origin.x * d.x + origin.y * d.y + origin.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
     let o = origin + d * shift;
 
     // Parallel to the side, the second root is far away, but finite.
@@ -55,7 +53,9 @@ fn cone_project(point: vec3<f32>, face: u32) -> vec3<f32> {
     // The foot on the generator (rho, y) = s (1, -1).
     let s = clamp(0.5 * (rho - point.y), 0.0, 1.0);
     let scale = select(1.0 / max(rho, 1.0), s / max(rho, TINY), on_side);
-    return vec3<f32>(point.x * scale, select(-1.0, -s, on_side), point.z * scale);
+    // On the axis any generator will do.
+    let x = select(point.x * scale, s, on_side && rho <= TINY);
+    return vec3<f32>(x, select(-1.0, -s, on_side), point.z * scale);
 }
 
 fn cone_normal(point: vec3<f32>, face: u32) -> vec3<f32> {

@@ -31,21 +31,24 @@ fn torus_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, radii: v
     let length = sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
     let u = d / length;
 
-    // The span inside the bounding cylinder: |y| <= r, rho <= R + r.
+    // The span inside the bounding cylinder, |y| <= r and rho <= R + r, wider by the rounding error of far origins.
     let a = max(u.x * u.x + u.z * u.z, 1.0e-12);
     let inverse_a = 1.0 / a;
     let moment = origin.z * u.x - origin.x * u.z;
-    let discriminant = a * (outer * outer) - moment * moment;
     let centre = -(origin.x * u.x + origin.z * u.z) * inverse_a;
-    // Nearly parallel to the axis the slab alone is bound enough.
-    let half = select(sqrt(max(discriminant, 0.0)) * inverse_a, FAR, a < 1.0e-8);
+    let slack = 5.0e-7 * (abs(origin.x) + abs(origin.y) + abs(origin.z) + outer);
+    let bound = outer + slack;
+    let discriminant = a * (bound * bound) - moment * moment;
+    // Nearly parallel to the axis the slab alone is bound enough, and there is no concave stretch.
+    let parallel = a < 1.0e-8;
+    let half = select(sqrt(max(discriminant, 0.0)) * inverse_a, FAR, parallel);
     let inverse_y = safe_reciprocal(u.y);
-    let bottom = (-minor - origin.y) * inverse_y;
-    let top = (minor - origin.y) * inverse_y;
+    let bottom = (-(minor + slack) - origin.y) * inverse_y;
+    let top = ((minor + slack) - origin.y) * inverse_y;
     let entry = max(centre - half, min(bottom, top));
     let near = max(entry, 0.0);
     let far = min(centre + half, max(bottom, top));
-    if (!(near < far && near < t_max * length && (discriminant >= 0.0 || a < 1.0e-8))) {
+    if (!(near < far && (discriminant >= 0.0 || parallel))) {
         return ShapeHit(MISS, 0u);
     }
 
@@ -58,7 +61,7 @@ fn torus_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, radii: v
     let m2 = m * m;
     let closest = -(o.x * u.x + o.z * u.z) * inverse_a;
     let rho = cube_root(major * m2);
-    let half_concave = sqrt(max((rho * rho - m2 * inverse_a) * inverse_a, 0.0));
+    let half_concave = select(sqrt(max((rho * rho - m2 * inverse_a) * inverse_a, 0.0)), 0.0, parallel);
     let first = clamp(closest - half_concave, start, end);
     let second = clamp(closest + half_concave, start, end);
 
@@ -77,9 +80,10 @@ fn torus_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, radii: v
     var s = select(fallback, select(first, start, outside), tries_early);
     var limit = select(end, select(second, first, outside), tries_early);
 
-    // A last step of 2e-4 r leaves an error of its square, 2e-8 r at a right angle; the other term is rounding noise.
-    let tolerance = 2.0e-4 * minor + 2.0e-6 * outer;
+    // The last step leaves an error of its square, over the radius of curvature; the other term is rounding noise.
+    let tolerance = 1.0e-5 * minor + 2.0e-6 * outer;
     var late = !tries_early;
+    var last = 0.0;
     var missed = false;
     for (var turn = 0u; turn < TORUS_STEPS; turn++) {
         let g = torus_implicit(o, u, s, radii);
@@ -89,11 +93,14 @@ fn torus_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, radii: v
         if (missed) {
             break;
         }
+        // Newton's method comes from one side; where it turns back, all that is left of g is rounding.
         let step = -0.5 * g.x / g.y;
-        s = select(s + step, fallback, lost);
+        let turned = step * last < 0.0 && abs(g.x) <= 1.0e-6 * (minor * outer);
+        s = select(select(s + step, s, turned), fallback, lost);
+        last = select(step, 0.0, lost);
         limit = select(limit, end, lost);
         late = late || lost;
-        if (!lost && abs(step) <= tolerance) {
+        if (!lost && (turned || abs(step) <= tolerance)) {
             break;
         }
     }

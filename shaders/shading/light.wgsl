@@ -43,6 +43,7 @@ fn direct_light(surface: Surface, material: Material, v: vec3<f32>, index: u32, 
         first = dispatch.pass_index * frame.light_samples;
         last = min(first + frame.light_samples, frame.light_count * frame.shadow_count);
     }
+    let blinn = (frame.flags & FRAME_BLINN) != 0u;
     let origin = offset_ray_origin(surface.point, surface.geometric_normal);
     for (var sample = first; sample < last; sample++) {
         var light_index = sample;
@@ -76,7 +77,7 @@ fn direct_light(surface: Surface, material: Material, v: vec3<f32>, index: u32, 
         if (scene_occluded(origin, target_point - origin, SHADOW_T_MAX)) {
             continue;
         }
-        let reflected = phong(material, surface.shading_normal, l, v);
+        let reflected = phong(material, surface.shading_normal, l, v, blinn);
         sum += (weight * attenuation(light, distance)) * (light.colour * reflected);
     }
     return sum;

@@ -1,12 +1,13 @@
 // What a surface does to light: Whitted's model with Phong's or Blinn's highlight, Schlick's Fresnel term, Snell's law.
 
 // Reflected light of one light's unit irradiance: n, l (to the light) and v (to the viewer) are unit vectors.
-// The highlight is not multiplied by the diffuse colour and is there only where n.l > 0.
-fn phong(material: Material, n: vec3<f32>, l: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
+// The highlight, Phong's (r.v)^p or Blinn's (n.h)^p, is not multiplied by the diffuse colour and is there only where
+// n.l > 0.
+fn phong(material: Material, n: vec3<f32>, l: vec3<f32>, v: vec3<f32>, blinn: bool) -> vec3<f32> {
     let n_dot_l = dot(n, l);
     var cosine: f32;
-    if ((frame.flags & FRAME_BLINN) != 0u) {
-        cosine = dot(n, normalize(l + v));
+    if (blinn) {
+        cosine = dot(n, unit_vector(l + v));
     } else {
         cosine = dot(2.0 * n_dot_l * n - l, v);
     }

@@ -13,7 +13,7 @@ Examples:
   gpu-trace scenes/first.lua -o out.png --size 1920x1080 --samples 64
   gpu-trace swing.lua 12                        frame 12 of an animation: gr.frame_cmd() gives 12
   gpu-trace scene.lua --device cpu -q --json -  no talk, the figures as JSON on standard output
-  gpu-trace doctor                              what devices there are, and whether they compute right
+  gpu-trace doctor                              the devices, and whether they compute right
   gpu-trace compare a.png b.png --fail-above 0.002
 
 The exit code is 0 when every picture was written, 2 for wrong arguments, 130 after an interrupt, else 1.
@@ -34,11 +34,11 @@ pub struct Arguments {
     pub render: Option<RenderArguments>,
 
     /// Say nothing on standard error but errors
-    #[arg(short, long, conflicts_with = "verbose", help_heading = "Messages", display_order = 100)]
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Messages", display_order = 100)]
     pub quiet: bool,
 
     /// Say more; -vv for debugging. RUST_LOG chooses module by module
-    #[arg(short, long, action = clap::ArgAction::Count, help_heading = "Messages", display_order = 101)]
+    #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = "Messages", display_order = 101)]
     pub verbose: u8,
 }
 
@@ -57,7 +57,7 @@ pub struct RenderArguments {
     pub scene: PathBuf,
 
     /// The number that gr.frame_cmd() gives the scene
-    #[arg(value_name = "FRAME", default_value_t = 0)]
+    #[arg(value_name = "FRAME", default_value_t = 0, allow_negative_numbers = true)]
     pub frame: u32,
 
     /// Write the picture here, and not where the scene says; for scenes that render one picture
@@ -73,15 +73,15 @@ pub struct RenderArguments {
     pub transparent: bool,
 
     /// Camera samples a pixel, in place of the scene's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24), help_heading = "Sampling")]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24), help_heading = "Sampling")]
     pub samples: Option<u32>,
 
     /// Seed of all random numbers, math.random's included [default: the scene's]
-    #[arg(long, value_name = "N", help_heading = "Sampling")]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", help_heading = "Sampling")]
     pub seed: Option<u32>,
 
     /// The most reflections and refractions one after another, in place of the scene's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000), help_heading = "Sampling")]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000), help_heading = "Sampling")]
     pub max_depth: Option<u32>,
 
     /// How to read the scene where programs differ: view=point|direction, transforms=pre|post,
@@ -117,7 +117,7 @@ pub struct CompareArguments {
     pub mask: Option<MaskName>,
 
     /// Exit with 1 where the FLIP mean, in [0, 1], is above this
-    #[arg(long, value_name = "X", value_parser = parse_threshold)]
+    #[arg(long, allow_negative_numbers = true, value_name = "X", value_parser = parse_threshold)]
     pub fail_above: Option<f64>,
 }
 

@@ -1,7 +1,7 @@
 //! `gpu-trace compare`.
 
 use super::args::CompareArguments;
-use gpu_trace::film::{Mask, compare_images, read_picture};
+use gpu_trace::film::{Mask, compare_masked, read_picture};
 use gpu_trace::{Error, Result};
 use std::io::Write;
 use std::path::Path;
@@ -13,11 +13,11 @@ use std::path::Path;
 pub fn run(arguments: &CompareArguments) -> Result<()> {
     let reference = read_picture(&arguments.reference)?;
     let test = read_picture(&arguments.test)?;
-    let comparison = compare_images(&reference, &test, arguments.mask.map_or(Mask::None, Mask::from))?;
+    let comparison = compare_masked(&reference, &test, arguments.mask.map_or(Mask::None, Mask::from))?;
     print_line(&comparison.to_string())?;
     match arguments.fail_above {
         Some(threshold) if comparison.flip_mean > threshold => {
-            Err(Error::Scene(format!("the FLIP mean {} is above {threshold}", comparison.flip_mean)))
+            Err(Error::Scene(format!("the FLIP mean {:.6} is above {threshold}", comparison.flip_mean)))
         }
         _ => Ok(()),
     }

@@ -1,13 +1,11 @@
 //! `gpu-trace doctor`: what devices there are, what they allow, and whether they compute right.
 
 use super::compare::print_line;
-use super::reference::{TILE, TILE_SAMPLES, agrees, compare_tiles, render_known_answer, render_tile};
+use super::reference::{agrees, compare_tiles, render_known_answer, render_tile};
 use gpu_trace::device::DeviceInfo;
 use gpu_trace::film::Film;
 use gpu_trace::gpu::device::INSTALL_HINT;
-use gpu_trace::gpu::{
-    Description, Device, DeviceLimits, DeviceSelector, GpuOptions, GpuRenderer, list_adapters, probe,
-};
+use gpu_trace::gpu::{Description, Device, DeviceLimits, GpuOptions, GpuRenderer, probe};
 use gpu_trace::renderer::Renderer;
 use gpu_trace::{Error, Result};
 
@@ -33,12 +31,12 @@ pub fn run() -> Result<()> {
     }
     let reference = tile.ok().map(|tile| tile.film);
 
-    let adapters = list_adapters();
-    if adapters.is_empty() {
+    let devices = Device::open_each();
+    if devices.is_empty() {
         print_line(&format!("\nNo Vulkan, Metal or Direct3D 12 device was found; {INSTALL_HINT}."))?;
     }
-    for (description, limits) in adapters {
-        if !examine(&description, &limits, reference.as_ref())? {
+    for (description, limits, device) in devices {
+        if !examine(&description, &limits, device, reference.as_ref())? {
             failed.push(description.name);
         }
     }
@@ -50,7 +48,12 @@ pub fn run() -> Result<()> {
 }
 
 /// Whether the device passed its tests. Errors are those of printing.
-fn examine(description: &Description, limits: &DeviceLimits, reference: Option<&Film>) -> Result<bool> {
+fn examine(
+    description: &Description,
+    limits: &DeviceLimits,
+    device: Result<Device>,
+    reference: Option<&Film>,
+) -> Result<bool> {
     print_line(&format!("\n{}", DeviceInfo::new(description, String::new())))?;
     print_line(&format!(
         "  limits          {} in one binding, {} in one buffer, {} storage buffers, {} workgroups of up to {}",
@@ -60,13 +63,15 @@ fn examine(description: &Description, limits: &DeviceLimits, reference: Option<&
         limits.workgroups,
         limits.workgroup_invocations
     ))?;
-    let device = match Device::open(&DeviceSelector::Named(description.name.clone())) {
+    let device = match device {
         Ok(device) => device,
-        Err(error) => return print_line(&verdict(false, &format!("  open            {error}"))).map(|()| false),
+        Err(error) => {
+            return print_line(&format!("  open            {}", verdict(false, &error.to_string()))).map(|()| false);
+        }
     };
 
     let loops = match probe::loop_cap(&device).map(|cap| cap.turns()) {
-        // Rendering copes with a cap: its loops are counted, and it says so where they are cut short.
+        // Rendering copes with a cap: the kernel notices loops that were cut short.
         Ok(Some(turns)) => (true, format!("the driver ends loops after {turns} turns of one invocation; allowed for")),
         Ok(None) => (true, "run as long as they should".to_owned()),
         Err(error) => (false, error.to_string()),
@@ -75,12 +80,14 @@ fn examine(description: &Description, limits: &DeviceLimits, reference: Option<&
 
     let mut renderer = match GpuRenderer::new(device, GpuOptions::default()) {
         Ok(renderer) => renderer,
-        Err(error) => return print_line(&verdict(false, &format!("  kernel          {error}"))).map(|()| false),
+        Err(error) => {
+            return print_line(&format!("  kernel          {}", verdict(false, &error.to_string()))).map(|()| false);
+        }
     };
     let known = known_answer(&mut renderer)?;
     let tile = match (render_tile(&mut renderer), reference) {
         (Ok(tile), Some(reference)) => match compare_tiles(reference, &tile.film) {
-            Ok(comparison) => (agrees(&comparison), format!("{comparison}, against the CPU")),
+            Ok(comparison) => (agrees(&comparison), format!("against the CPU {comparison}")),
             Err(error) => (false, error.to_string()),
         },
         (Ok(_), None) => (false, "nothing to compare with, as the CPU failed".to_owned()),
@@ -102,7 +109,7 @@ fn known_answer(renderer: &mut dyn Renderer) -> Result<bool> {
 }
 
 fn print_tile(text: &str) -> Result<()> {
-    print_line(&format!("  {:<15} {text}", format!("{TILE}x{TILE}, {TILE_SAMPLES} spp")))
+    print_line(&format!("  reference tile  {text}"))
 }
 
 fn verdict(passed: bool, text: &str) -> String {

@@ -3,7 +3,7 @@
 
 use glam::{DAffine3, DVec3, Vec3};
 use gpu_trace::Result;
-use gpu_trace::film::{Comparison, Film, Mask, compare_images};
+use gpu_trace::film::{Comparison, Film, compare_images};
 use gpu_trace::flatten::flatten;
 use gpu_trace::render::{RenderOptions, Rendered, Unattended, render};
 use gpu_trace::renderer::Renderer;
@@ -14,9 +14,9 @@ use gpu_trace::scene::{
 use std::sync::Arc;
 
 /// Edge of the tile in pixels.
-pub const TILE: u32 = 64;
+const TILE: u32 = 64;
 /// Camera samples a pixel of the tile.
-pub const TILE_SAMPLES: u32 = 4;
+const TILE_SAMPLES: u32 = 4;
 
 /// Two devices agree where the tiles' FLIP mean and share of differing pixels are no larger.
 const FLIP_TOLERANCE: f64 = 0.002;
@@ -29,7 +29,7 @@ pub fn agrees(comparison: &Comparison) -> bool {
 /// Compares the pictures of two films of the tile, the CPU's first.
 pub fn compare_tiles(reference: &Film, test: &Film) -> Result<Comparison> {
     let [reference, test] = [reference, test].map(|film| film.resolve(Transfer::Linear, false));
-    compare_images(&reference, &test, Mask::None)
+    compare_images(&reference, &test)
 }
 
 /// A matt ball above a mirror-like floor, a glass ball, and a soft-edged light: shadow, reflected and refracted rays.
@@ -137,4 +137,59 @@ fn camera(eye: DVec3, forward: DVec3, fov: f64) -> Camera {
 fn render_scene(scene: &Scene, renderer: &mut dyn Renderer) -> Result<Rendered> {
     let buffers = Arc::new(flatten(scene)?);
     render(buffers.clone(), renderer, &RenderOptions::whole(&buffers), &mut Unattended)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gpu_trace::cpu::CpuRenderer;
+    use gpu_trace::flatten::SceneBuffers;
+    use gpu_trace::layout::{Dispatch, Frame};
+    use gpu_trace::renderer::Tally;
+    use std::ops::Range;
+
+    /// The CPU's work with a change to the picture's constants: a device that computes something else.
+    struct Wrong(CpuRenderer, fn(&mut Frame));
+
+    impl Renderer for Wrong {
+        fn prepare(&mut self, scene: Arc<SceneBuffers>) -> Result<()> {
+            self.0.prepare(scene)
+        }
+        fn max_band_pixels(&self) -> u64 {
+            self.0.max_band_pixels()
+        }
+        fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {
+            self.0.begin_band(rows)
+        }
+        fn submit(&mut self, frame: &Frame, dispatches: &[Dispatch]) -> Result<Tally> {
+            let mut frame = *frame;
+            (self.1)(&mut frame);
+            self.0.submit(&frame, dispatches)
+        }
+        fn end_band(&mut self, film: &mut Film) -> Result<()> {
+            self.0.end_band(film)
+        }
+    }
+
+    #[test]
+    fn a_wrong_answer_is_not_taken_for_right() -> Result<()> {
+        assert!(render_known_answer(&mut Wrong(CpuRenderer::new(), |_| ()))?.is_right());
+        let mut wrong = Wrong(CpuRenderer::new(), |frame| frame.ambient.x += 0.001);
+        assert!(!render_known_answer(&mut wrong)?.is_right());
+        Ok(())
+    }
+
+    #[test]
+    fn a_wrong_tile_is_not_taken_for_right() -> Result<()> {
+        let right = render_tile(&mut CpuRenderer::new())?.film;
+        assert!(agrees(&compare_tiles(&right, &render_tile(&mut CpuRenderer::new())?.film)?));
+        let wrong: [fn(&mut Frame); 3] =
+            [|frame| frame.seed += 1, |frame| frame.max_depth = 0, |frame| frame.tan_half_fov *= 1.01];
+        for change in wrong {
+            let film = render_tile(&mut Wrong(CpuRenderer::new(), change))?.film;
+            let comparison = compare_tiles(&right, &film)?;
+            assert!(!agrees(&comparison), "{comparison}");
+        }
+        Ok(())
+    }
 }

@@ -25,16 +25,26 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     }
     let report = arguments.json.as_deref().map(ReportWriter::open).transpose()?;
 
-    let mut session = Session { arguments, console, device: None, report, written: 0, failure: None };
+    let mut session = Session { arguments, console, device: None, report, written: 0 };
     let defaults = ScriptOptions::default();
     let options = ScriptOptions {
         frame: arguments.frame,
         seed: arguments.seed.unwrap_or(defaults.seed),
-        conventions: arguments.conventions.clone().unwrap_or_default(),
+        conventions: arguments.conventions.unwrap_or_default(),
         ..defaults
     };
     let outcome = run_scene(&arguments.scene, &options, &mut |scene| session.picture(scene));
-    session.conclude(outcome.map(drop))
+    session.conclude(outcome.map(drop).map_err(|error| explain_subcommand(error, arguments)))
+}
+
+/// A subcommand that follows an option is taken for a scene, whose file then is missing.
+fn explain_subcommand(error: Error, arguments: &RenderArguments) -> Error {
+    match (&error, arguments.scene.to_str()) {
+        (Error::File { .. }, Some(name @ ("doctor" | "compare" | "help"))) => {
+            Error::Scene(format!("{error}; the subcommand '{name}' must come first"))
+        }
+        _ => error,
+    }
 }
 
 /// The pictures of one script.
@@ -45,20 +55,11 @@ struct Session<'a> {
     device: Option<(Box<dyn Renderer>, DeviceInfo)>,
     report: Option<ReportWriter>,
     written: u32,
-    /// Why a picture could not be written. The script may have caught the error and gone on.
-    failure: Option<String>,
 }
 
 impl Session<'_> {
-    fn picture(&mut self, scene: Scene) -> Result<()> {
-        let outcome = self.render_and_write(scene);
-        if let Err(error) = &outcome {
-            self.failure.get_or_insert_with(|| error.to_string());
-        }
-        outcome
-    }
-
-    fn render_and_write(&mut self, mut scene: Scene) -> Result<()> {
+    /// Renders one picture and writes it.
+    fn picture(&mut self, mut scene: Scene) -> Result<()> {
         self.apply_arguments(&mut scene)?;
         let format = OutputFormat::from_path(&scene.output)?;
         check_writable("write the picture", &scene.output)?;
@@ -117,7 +118,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Success only where pictures were asked for and every one was written, whatever the script made of errors.
+    /// Success only where pictures were asked for and every one was written.
     fn conclude(self, outcome: Result<()>) -> Result<()> {
         if interrupt::requested() {
             if self.written > 0 {
@@ -126,14 +127,13 @@ impl Session<'_> {
             return Err(Error::Interrupted);
         }
         outcome?;
-        match self.failure {
-            Some(message) => Err(Error::Scene(message)),
-            None if self.written == 0 => Err(Error::Scene(format!(
+        if self.written == 0 {
+            return Err(Error::Scene(format!(
                 "{}: the script ended without a call of gr.render; no picture was written",
                 self.arguments.scene.display()
-            ))),
-            None => Ok(()),
+            )));
         }
+        Ok(())
     }
 }
 

@@ -100,9 +100,9 @@ fn temporary_file(folder: &Path, permissions: Option<Permissions>) -> io::Result
     Ok(file)
 }
 
-/// The error of the system alone: tempfile adds the temporary file's name, which means nothing to the user.
+/// The system's own error: tempfile wraps it with the temporary file's name, which means nothing to the user.
 fn without_path(error: io::Error) -> io::Error {
-    error
-        .raw_os_error()
-        .map_or_else(|| io::Error::new(error.kind(), error.kind().to_string()), io::Error::from_raw_os_error)
+    let inner =
+        error.get_ref().and_then(|wrapper| wrapper.source()).and_then(|source| source.downcast_ref::<io::Error>());
+    inner.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
 }

@@ -61,7 +61,15 @@ pub fn read_picture(path: &Path) -> Result<DynamicImage> {
     })
 }
 
-/// Compares two pictures of the same size, `reference` and `test`.
+/// Compares two pictures of the same size, all of their pixels; see [`compare_masked`].
+///
+/// # Errors
+/// As [`compare_masked`].
+pub fn compare_images(reference: &DynamicImage, test: &DynamicImage) -> Result<Comparison> {
+    compare_masked(reference, test, Mask::None)
+}
+
+/// Compares the pixels of two pictures of the same size that lie inside the mask.
 ///
 /// Colours are compared as they look over black (multiplied by alpha), so that what a fully transparent pixel holds
 /// does not matter. Alpha is a fourth channel where either picture has one and no mask is used; FLIP, a measure of
@@ -70,7 +78,7 @@ pub fn read_picture(path: &Path) -> Result<DynamicImage> {
 /// # Errors
 /// [`Error::Scene`] where the sizes differ, the mask is empty or wants an alpha that the reference does not have, or
 /// the pictures have 2^28 pixels or more.
-pub fn compare_images(reference: &DynamicImage, test: &DynamicImage, mask: Mask) -> Result<Comparison> {
+pub fn compare_masked(reference: &DynamicImage, test: &DynamicImage, mask: Mask) -> Result<Comparison> {
     let (width, height) = (reference.width(), reference.height());
     if (width, height) != (test.width(), test.height()) {
         return Err(Error::Scene(format!(

@@ -8,8 +8,8 @@ mod resolve;
 mod transfer;
 
 pub use atomic::{check_writable, write_atomically};
-pub use compare::{Comparison, Mask, compare_images, read_picture};
-pub use output::OutputFormat;
+pub use compare::{Comparison, Mask, compare_images, compare_masked, read_picture};
+pub use output::{OutputFormat, write_picture};
 pub use transfer::{decode_srgb, encode, quantise};
 
 use crate::layout::FilmPixel;

@@ -57,3 +57,11 @@ impl OutputFormat {
         write_atomically("write the picture", path, |out| self.encode(film, transfer, transparent, out))
     }
 }
+
+/// Writes the picture in the format that the ending of the file's name asks for; see [`OutputFormat::write`].
+///
+/// # Errors
+/// As [`OutputFormat::from_path`] and [`OutputFormat::write`].
+pub fn write_picture(film: &Film, path: &Path, transfer: Transfer, transparent: bool) -> Result<()> {
+    OutputFormat::from_path(path)?.write(film, path, transfer, transparent)
+}

@@ -45,7 +45,7 @@ pub fn build(
         instance.material = materials.get(&placement.material).copied().unwrap_or(0);
         let bounds = match &placement.geometry.shape {
             Shape::Mesh(mesh) => {
-                // The mesh's index stands in for its root, which is known once the upper level is built.
+                // The node's index in `meshes` stands in for the root until the mesh has its place.
                 let Some(index) = meshes.index_of(mesh) else { continue };
                 let mesh = &meshes.built[index];
                 if mesh.triangles.is_empty() {
@@ -64,8 +64,8 @@ pub fn build(
                 }
             },
         };
-        let reach = bounds.min.abs().max(bounds.max.abs());
-        if !reach.cmple(DVec3::splat(MAX_COORDINATE)).all() {
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        if reach.is_nan() || reach > MAX_COORDINATE {
             return Err(Error::Scene(format!(
                 "node '{name}' reaches from {} to {}; coordinates must lie within ±1e12",
                 bounds.min, bounds.max

@@ -25,10 +25,9 @@ pub struct LoopCap {
 }
 
 impl LoopCap {
-    /// Turns after which the device ended the loop that fell shortest of what was asked, if one did.
+    /// Turns that a loop made before the device ended it early, if it did.
     pub fn turns(&self) -> Option<u32> {
-        let short = [self.single, self.nested].into_iter().filter(|turns| turns.made != turns.expected);
-        short.map(|turns| turns.made).min()
+        [self.single, self.nested].into_iter().find(|turns| turns.made != turns.expected).map(|turns| turns.made)
     }
 }
 

@@ -1,6 +1,9 @@
 //! Scenes built in a few lines, and pictures of them from either renderer.
 
+pub mod function_table;
+pub mod oracle;
 pub mod placed;
+pub mod rays;
 
 use glam::{DAffine3, DVec3, Vec3};
 use gpu_trace::device::{DeviceChoice, open_renderer};
@@ -112,8 +115,7 @@ pub fn pixel_direction(scene: &Scene, x: u32, y: u32, offset: [f64; 2]) -> DVec3
 /// Chi-square of counts against expectations as a standard normal deviate (Wilson and Hilferty 1931): beyond ±4 the
 /// counts do not fit, or fit too well to be independent.
 pub fn chi_square_deviate(counts: &[u64], expected: &[f64]) -> f64 {
-    let chi_square: f64 =
-        counts.iter().zip(expected).map(|(count, mean)| (*count as f64 - mean).powi(2) / mean).sum();
+    let chi_square: f64 = counts.iter().zip(expected).map(|(count, mean)| (*count as f64 - mean).powi(2) / mean).sum();
     let freedom = (counts.len() - 1) as f64;
     let spread = 2.0 / (9.0 * freedom);
     ((chi_square / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()

@@ -12,10 +12,8 @@ pub const CONE_CAP: u32 = 1;
 #[inline]
 pub fn cone_intersect(origin: Vec3, direction: Vec3, t_max: f32) -> ShapeHit {
     let d = direction;
-    // ⟨o, o⟩ loses its digits far out along the side: start from the closest approach to the apex instead.
-    let distance2 = origin.x * origin.x + origin.y * origin.y + origin.z * origin.z;
-    let approach = -(origin.x * d.x + origin.y * d.y + origin.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
-    let shift = if distance2 > 4.0 { approach } else { 0.0 };
+    // ⟨o, o⟩ loses its digits out along the side: start from the closest approach to the apex instead.
+    let shift = -(origin.x * d.x + origin.y * d.y + origin.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
     let o = origin + d * shift;
 
     // Parallel to the side, the second root is far away, but finite.
@@ -62,7 +60,9 @@ pub fn cone_project(point: Vec3, face: u32) -> Vec3 {
     // The foot on the generator (rho, y) = s (1, -1).
     let s = (0.5 * (rho - point.y)).clamp(0.0, 1.0);
     let scale = if on_side { s / rho.max(TINY) } else { 1.0 / rho.max(1.0) };
-    Vec3::new(point.x * scale, if on_side { -s } else { -1.0 }, point.z * scale)
+    // On the axis any generator will do.
+    let x = if on_side && rho <= TINY { s } else { point.x * scale };
+    Vec3::new(x, if on_side { -s } else { -1.0 }, point.z * scale)
 }
 
 /// Unit outward normal at a point of the face; the apex takes the direction of the axis.

@@ -16,7 +16,8 @@ pub fn cylinder_intersect(origin: Vec3, direction: Vec3, t_max: f32) -> ShapeHit
     let d = direction;
     let a = d.x * d.x + d.z * d.z;
     let b = -(o.x * d.x + o.z * d.z);
-    let c = (o.x * o.x + o.z * o.z) - 1.0;
+    // In this order, which shader compilers keep: they bring constants next to products.
+    let c = o.x * o.x + (o.z * o.z - 1.0);
     let moment = o.z * d.x - o.x * d.z;
     let discriminant = a - moment * moment;
     // Parallel to the axis to 1e-12: inside the infinite cylinder all the way, or never.

@@ -28,21 +28,24 @@ pub fn torus_intersect(origin: Vec3, direction: Vec3, t_max: f32, radii: Vec2) -
     let length = (d.x * d.x + d.y * d.y + d.z * d.z).sqrt();
     let u = d / length;
 
-    // The span inside the bounding cylinder: |y| ≤ r, rho ≤ R + r.
+    // The span inside the bounding cylinder, |y| ≤ r and rho ≤ R + r, wider by the rounding error of far origins.
     let a = (u.x * u.x + u.z * u.z).max(1.0e-12);
     let inverse_a = 1.0 / a;
     let moment = origin.z * u.x - origin.x * u.z;
-    let discriminant = a * (outer * outer) - moment * moment;
     let centre = -(origin.x * u.x + origin.z * u.z) * inverse_a;
-    // Nearly parallel to the axis the slab alone is bound enough.
-    let half = if a < 1.0e-8 { FAR } else { discriminant.max(0.0).sqrt() * inverse_a };
+    let slack = 5.0e-7 * (origin.x.abs() + origin.y.abs() + origin.z.abs() + outer);
+    let bound = outer + slack;
+    let discriminant = a * (bound * bound) - moment * moment;
+    // Nearly parallel to the axis the slab alone is bound enough, and there is no concave stretch.
+    let parallel = a < 1.0e-8;
+    let half = if parallel { FAR } else { discriminant.max(0.0).sqrt() * inverse_a };
     let inverse_y = safe_reciprocal(u.y);
-    let bottom = (-minor - origin.y) * inverse_y;
-    let top = (minor - origin.y) * inverse_y;
+    let bottom = (-(minor + slack) - origin.y) * inverse_y;
+    let top = ((minor + slack) - origin.y) * inverse_y;
     let entry = (centre - half).max(bottom.min(top));
     let near = entry.max(0.0);
     let far = (centre + half).min(bottom.max(top));
-    let meets = near < far && near < t_max * length && (discriminant >= 0.0 || a < 1.0e-8);
+    let meets = near < far && (discriminant >= 0.0 || parallel);
     if !meets {
         return ShapeHit { t: MISS, face: 0 };
     }
@@ -56,7 +59,7 @@ pub fn torus_intersect(origin: Vec3, direction: Vec3, t_max: f32, radii: Vec2) -
     let m2 = m * m;
     let closest = -(o.x * u.x + o.z * u.z) * inverse_a;
     let rho = cube_root(major * m2);
-    let half_concave = ((rho * rho - m2 * inverse_a) * inverse_a).max(0.0).sqrt();
+    let half_concave = if parallel { 0.0 } else { ((rho * rho - m2 * inverse_a) * inverse_a).max(0.0).sqrt() };
     let first = (closest - half_concave).max(start).min(end);
     let second = (closest + half_concave).max(start).min(end);
 
@@ -78,9 +81,10 @@ pub fn torus_intersect(origin: Vec3, direction: Vec3, t_max: f32, radii: Vec2) -
         (true, false) => (first, second),
     };
 
-    // A last step of 2e-4 r leaves an error of its square, 2e-8 r at a right angle; the other term is rounding noise.
-    let tolerance = 2.0e-4 * minor + 2.0e-6 * outer;
+    // The last step leaves an error of its square, over the radius of curvature; the other term is rounding noise.
+    let tolerance = 1.0e-5 * minor + 2.0e-6 * outer;
     let mut late = !tries_early;
+    let mut last = 0.0;
     let mut missed = false;
     for _ in 0..TORUS_STEPS {
         let g = torus_implicit(o, u, s, radii);
@@ -91,15 +95,19 @@ pub fn torus_intersect(origin: Vec3, direction: Vec3, t_max: f32, radii: Vec2) -
         if missed {
             break;
         }
+        // Newton's method comes from one side; where it turns back, all that is left of g is rounding.
         let step = -0.5 * g.x / g.y;
+        let turned = step * last < 0.0 && g.x.abs() <= 1.0e-6 * (minor * outer);
         if lost {
             s = fallback;
+            last = 0.0;
             limit = end;
             late = true;
         } else {
-            s += step;
+            s = if turned { s } else { s + step };
+            last = step;
         }
-        if !lost && step.abs() <= tolerance {
+        if !lost && (turned || step.abs() <= tolerance) {
             break;
         }
     }

@@ -82,7 +82,7 @@ pub fn decode_octahedral(packed: u32) -> Vec3 {
     Vec3::new(vx, vy, z) / (vx * vx + vy * vy + z * z).sqrt()
 }
 
-/// The octahedral packing of a direction of any length but zero; decoding is off by 5e-5 radians at most. Only the
+/// The octahedral packing of a direction of any length but zero; decoding is off by 7e-5 radians at most. Only the
 /// host packs, so this has no twin.
 pub fn encode_octahedral(direction: Vec3) -> u32 {
     let n = direction / (direction.x.abs() + direction.y.abs() + direction.z.abs());

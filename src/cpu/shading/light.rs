@@ -8,7 +8,7 @@ use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::math::sampling::sample_cone;
 use crate::cpu::path::{DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, Ray};
 use crate::cpu::shading::material::phong;
-use crate::layout::{LIGHT_PARALLELOGRAM, LIGHT_POINT, Light, Material, RAY_SHADOW};
+use crate::layout::{FRAME_BLINN, LIGHT_PARALLELOGRAM, LIGHT_POINT, Light, Material, RAY_SHADOW};
 use crate::renderer::Tally;
 use glam::{Vec2, Vec3};
 
@@ -64,6 +64,7 @@ pub fn direct_light(
         first = pass_index * frame.light_samples;
         last = (first + frame.light_samples).min(frame.light_count * frame.shadow_count);
     }
+    let blinn = frame.flags & FRAME_BLINN != 0;
     let origin = offset_ray_origin(surface.point, surface.geometric_normal);
     for sample in first..last {
         let mut light_index = sample;
@@ -98,7 +99,7 @@ pub fn direct_light(
         if scene_occluded(scene, origin, target_point - origin, SHADOW_T_MAX, tally) {
             continue;
         }
-        let reflected = phong(scene, material, surface.shading_normal, l, v);
+        let reflected = phong(material, surface.shading_normal, l, v, blinn);
         sum += (weight * attenuation(light, distance)) * (light.colour * reflected);
     }
     sum
