@@ -45,7 +45,7 @@ pub fn build(
         instance.material = materials.get(&placement.material).copied().unwrap_or(0);
         let bounds = match &placement.geometry.shape {
             Shape::Mesh(mesh) => {
-                // The node's index in `meshes` stands in for the root until the mesh has its place.
+                // The mesh's index stands in for its root, which is known once the upper level is built.
                 let Some(index) = meshes.index_of(mesh) else { continue };
                 let mesh = &meshes.built[index];
                 if mesh.triangles.is_empty() {
