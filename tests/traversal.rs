@@ -256,7 +256,8 @@ fn the_comparison_notices_a_broken_hierarchy() {
     let rays = rays_into(&sound, &mut random, 8.0, 4000);
     assert_same("sound", &sound, &rays);
 
-    let breakages: [(&str, fn(&mut Node)); 3] = [
+    type Breakage = fn(&mut Node);
+    let breakages: [(&str, Breakage); 3] = [
         ("a box that is a quarter too short", |node| {
             let shorten = |bytes: u32| u32::from_le_bytes(bytes.to_le_bytes().map(|byte| byte - byte / 4));
             node.max_x = UVec2::new(shorten(node.max_x.x), shorten(node.max_x.y));
