@@ -1,1 +1,304 @@
+//! The sample loop that both renderers serve: which pass of which sample runs where, and for how long.
 
+use crate::cpu::bindings::Bindings;
+use crate::cpu::media::media_at;
+use crate::film::Film;
+use crate::flatten::{SceneBuffers, WorkPlan, plan_work};
+use crate::layout::{Dispatch, Frame, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
+use crate::renderer::{Renderer, Tally};
+use crate::{Error, Result};
+use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A submit should take about this long: GPU watchdogs stop longer ones, shorter ones waste time between them.
+const SUBMIT_TARGET: Duration = Duration::from_millis(75);
+/// The first submit, before anything is known of the scene's speed.
+const FIRST_RUN_BLOCKS: u64 = 32;
+/// A run grows at most by this factor from submit to submit.
+const GROWTH: f64 = 4.0;
+/// Dispatches in one submit.
+const MAX_DISPATCHES: usize = 256;
+/// Blocks in one dispatch: WebGPU's limit of workgroups in a row.
+const MAX_BLOCKS: u64 = 65_535;
+/// Turns of the loop that shows whether the driver cuts loops short.
+const CANARY_TURNS: u32 = 4;
+/// Edge of a block in pixels; the kernels' workgroup covers one.
+const BLOCK_EDGE: u32 = 8;
+
+/// What to render of a scene.
+#[derive(Clone, Debug)]
+pub struct RenderOptions {
+    /// Camera samples of every pixel, by their numbers. Films of disjoint ranges merge into the film of their union.
+    pub samples: Range<u32>,
+    /// Fixes the blocks of a dispatch instead of sizing it by time; the picture is the same for any number.
+    pub blocks_per_dispatch: Option<u32>,
+    /// The most pixels to render at a time, where the device could hold more.
+    pub max_band_pixels: Option<u64>,
+    /// The work of a pass, in place of the planned one; it is divided all the same where a bound is met.
+    pub plan: Option<WorkPlan>,
+}
+
+impl RenderOptions {
+    /// All samples that the scene asks for.
+    pub fn whole(scene: &SceneBuffers) -> Self {
+        RenderOptions {
+            samples: 0..scene.sampling.camera,
+            blocks_per_dispatch: None,
+            max_band_pixels: None,
+            plan: None,
+        }
+    }
+}
+
+/// How far rendering has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Camera samples a pixel, averaged over the picture.
+    pub samples_done: f64,
+    pub samples_total: u32,
+    /// Rays of all kinds.
+    pub rays: u64,
+    /// Since the first submit; compiling is left out.
+    pub elapsed: Duration,
+}
+
+/// Hears of progress after every submit, and may stop the rendering.
+pub trait RenderControl {
+    fn progress(&mut self, progress: &Progress) -> ControlFlow<()>;
+}
+
+/// Lets rendering run to its end, unheard.
+pub struct Unattended;
+
+impl RenderControl for Unattended {
+    fn progress(&mut self, _: &Progress) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// A rendered film and what it took.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    pub film: Film,
+    pub tally: Tally,
+    /// Tracing, without `warmup_seconds`.
+    pub seconds: f64,
+    /// Upload, compiling and the first dispatch.
+    pub warmup_seconds: f64,
+    /// Passes of each sample, the largest over the bands.
+    pub passes: u32,
+    pub longest_submit_seconds: f64,
+}
+
+/// Renders the samples of a scene.
+///
+/// # Errors
+/// [`Error::Interrupted`] when `control` says so; [`Error::Kernel`] when the scene's work passes a bound of the kernel or
+/// the driver however it is divided; what the device reports.
+pub fn render(
+    scene: Arc<SceneBuffers>,
+    renderer: &mut dyn Renderer,
+    options: &RenderOptions,
+    control: &mut dyn RenderControl,
+) -> Result<Rendered> {
+    let warmup = Instant::now();
+    renderer.prepare(scene.clone())?;
+    let warmup_seconds = warmup.elapsed().as_secs_f64();
+
+    let mut frame = scene.frame;
+    if scene.features.refraction {
+        frame.medium = media_at(&Bindings::new(&scene, &frame), frame.eye);
+    }
+    let [width, height] = frame.image_size.to_array();
+    let band_pixels = options.max_band_pixels.unwrap_or(u64::MAX).min(renderer.max_band_pixels());
+    let band_rows = band_rows(width, height, band_pixels)?;
+    let started = Instant::now();
+    let mut job = Job {
+        renderer,
+        options,
+        control,
+        started,
+        frame,
+        scene: &scene,
+        plan: options.plan.unwrap_or_else(|| plan(&scene, 1)),
+        run_blocks: FIRST_RUN_BLOCKS as f64,
+        tally: Tally::default(),
+        pixels_before: 0,
+        pixels_total: u64::from(width) * u64::from(height),
+        longest_submit: Duration::ZERO,
+    };
+    let mut film = Film::new(width, height);
+    for first_row in (0..height).step_by(band_rows as usize) {
+        let rows = first_row..height.min(first_row + band_rows);
+        job.render_band(rows.clone())?;
+        job.renderer.end_band(&mut film)?;
+        job.pixels_before += u64::from(rows.end - rows.start) * u64::from(width);
+    }
+    film.samples = options.samples.end - options.samples.start;
+    Ok(Rendered {
+        film,
+        tally: job.tally,
+        seconds: started.elapsed().as_secs_f64(),
+        warmup_seconds,
+        passes: job.plan.pass_count,
+        longest_submit_seconds: job.longest_submit.as_secs_f64(),
+    })
+}
+
+fn plan(scene: &SceneBuffers, min_passes: u32) -> WorkPlan {
+    plan_work(scene.frame.light_count, scene.sampling.shadow, scene.sampling.glossy, min_passes)
+}
+
+/// Rows of a band: whole blocks, as many as the film buffer holds.
+fn band_rows(width: u32, height: u32, band_pixels: u64) -> Result<u32> {
+    let fitting = band_pixels / u64::from(width);
+    if fitting >= u64::from(height) {
+        return Ok(height);
+    }
+    let rows = (fitting / u64::from(BLOCK_EDGE) * u64::from(BLOCK_EDGE)) as u32;
+    if rows == 0 {
+        return Err(Error::Scene(format!("a picture {width} pixels wide does not fit the device's film buffer")));
+    }
+    Ok(rows)
+}
+
+/// What stays the same, and what adds up, from band to band.
+struct Job<'a> {
+    renderer: &'a mut dyn Renderer,
+    options: &'a RenderOptions,
+    control: &'a mut dyn RenderControl,
+    started: Instant,
+    scene: &'a SceneBuffers,
+    frame: Frame,
+    plan: WorkPlan,
+    /// Blocks that the next submit takes.
+    run_blocks: f64,
+    tally: Tally,
+    pixels_before: u64,
+    pixels_total: u64,
+    longest_submit: Duration,
+}
+
+impl Job<'_> {
+    /// Renders a band, with more passes of fewer rays each where a bound is met.
+    fn render_band(&mut self, rows: Range<u32>) -> Result<()> {
+        loop {
+            self.frame = self.plan.applied_to(self.frame);
+            self.renderer.begin_band(rows.clone())?;
+            let flags = self.render_passes(&rows)?;
+            if flags & STATUS_STACK_FULL != 0 {
+                return Err(Error::Kernel("a traversal stack overflowed: the scene's hierarchy is too deep".into()));
+            }
+            if flags & STATUS_LOOP_BOUND == 0 {
+                return Ok(());
+            }
+            if !self.plan.can_halve() {
+                return Err(Error::Kernel(
+                    "one ray tree of this scene takes more loop turns than the driver runs, even with one ray a \
+                     choice; lower --max-depth, update the driver (Mesa 23 or later), or use --device cpu"
+                        .into(),
+                ));
+            }
+            self.plan = plan(self.scene, self.plan.pass_count.saturating_mul(2));
+            log::info!("a loop bound was met: rendering again with {} passes a sample", self.plan.pass_count);
+        }
+    }
+
+    /// Runs every pass of every sample over the blocks of a band. Returns early with the flags when a bound is met.
+    fn render_passes(&mut self, rows: &Range<u32>) -> Result<u32> {
+        let band_rows = rows.end - rows.start;
+        let blocks =
+            u64::from(self.frame.image_size.x.div_ceil(BLOCK_EDGE)) * u64::from(band_rows.div_ceil(BLOCK_EDGE));
+        let passes = u64::from(self.frame.pass_count);
+        let samples = u64::from(self.options.samples.end - self.options.samples.start);
+        let total = samples * passes * blocks;
+        let band_share = f64::from(band_rows) * f64::from(self.frame.image_size.x) / self.pixels_total as f64;
+        let done_before = self.pixels_before as f64 / self.pixels_total as f64 * samples as f64;
+        let mut dispatches = Vec::new();
+        let mut next = 0;
+        while next < total {
+            let first = next;
+            dispatches.clear();
+            let run = (self.run_blocks as u64).max(1);
+            while next < total && next - first < run && dispatches.len() < MAX_DISPATCHES {
+                let (pass, block) = (next / blocks, next % blocks);
+                let mut count = (blocks - block).min(run - (next - first)).min(MAX_BLOCKS);
+                if let Some(fixed) = self.options.blocks_per_dispatch {
+                    count = count.min(u64::from(fixed.max(1)));
+                }
+                dispatches.push(Dispatch {
+                    sample_index: self.options.samples.start + (pass / passes) as u32,
+                    pass_index: (pass % passes) as u32,
+                    band_row: rows.start,
+                    band_rows,
+                    first_block: block as u32,
+                    block_count: count as u32,
+                    block_stride: block_stride(count as u32),
+                    canary_turns: CANARY_TURNS,
+                });
+                next += count;
+            }
+            let submitted = Instant::now();
+            let tally = self.renderer.submit(&self.frame, &dispatches)?;
+            let took = submitted.elapsed();
+            self.longest_submit = self.longest_submit.max(took);
+            self.tally += tally;
+            if tally.flags & (STATUS_LOOP_BOUND | STATUS_STACK_FULL) != 0 {
+                self.tally.flags = 0;
+                return Ok(tally.flags);
+            }
+            let ratio = SUBMIT_TARGET.as_secs_f64() / took.as_secs_f64().max(1e-6);
+            self.run_blocks = ((next - first) as f64 * ratio.min(GROWTH)).max(1.0);
+            let progress = Progress {
+                samples_done: done_before + next as f64 / total as f64 * samples as f64 * band_share,
+                samples_total: samples as u32,
+                rays: self.tally.total_rays(),
+                elapsed: self.started.elapsed(),
+            };
+            if self.control.progress(&progress).is_break() {
+                return Err(Error::Interrupted);
+            }
+        }
+        Ok(0)
+    }
+}
+
+/// An odd number near the golden section of `count` and coprime to it: multiples modulo `count` visit every block once
+/// and spread neighbours over the picture.
+fn block_stride(count: u32) -> u32 {
+    let mut stride = (f64::from(count) * 0.618_034) as u32 | 1;
+    while greatest_common_divisor(stride, count) != 1 {
+        stride += 2;
+    }
+    stride
+}
+
+fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_block_is_visited_once() {
+        for count in 1..500 {
+            let stride = block_stride(count);
+            let mut seen = vec![false; count as usize];
+            for group in 0..count {
+                seen[(group * stride % count) as usize] = true;
+            }
+            assert!(stride % 2 == 1 && seen.iter().all(|visited| *visited), "count {count}, stride {stride}");
+        }
+    }
+
+    #[test]
+    fn bands_are_whole_blocks() {
+        assert_eq!(band_rows(100, 50, 5000).ok(), Some(50));
+        assert_eq!(band_rows(100, 50, 4999).ok(), Some(48));
+        assert_eq!(band_rows(100, 50, 900).ok(), Some(8));
+        assert!(band_rows(100, 50, 799).is_err());
+    }
+}

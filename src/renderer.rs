@@ -5,6 +5,7 @@ use crate::film::Film;
 use crate::flatten::SceneBuffers;
 use crate::layout::{self, Dispatch, Frame};
 use std::ops::{AddAssign, Range};
+use std::sync::Arc;
 
 /// What rendering reports besides the picture: STATUS_* flags, and rays traced of each RAY_* kind.
 /// Twin of `Tally` in `shaders/tally.wgsl`.
@@ -32,7 +33,7 @@ impl AddAssign for Tally {
 /// A device that renders passes of samples into the film of a band of rows.
 pub trait Renderer {
     /// Uploads the scene and specialises the program to it.
-    fn prepare(&mut self, scene: &SceneBuffers) -> Result<()>;
+    fn prepare(&mut self, scene: Arc<SceneBuffers>) -> Result<()>;
 
     /// The most pixels that the film buffer can hold; a larger picture is rendered in bands of rows.
     fn max_band_pixels(&self) -> u64;

@@ -1,5 +1,27 @@
 //! All tests in one program: one link, and one start of the Vulkan driver.
 
-mod suite {
-    mod script;
-}
+mod support;
+
+mod analytic;
+mod cli;
+mod compare;
+mod devices;
+mod film;
+mod flatten;
+mod flatten_tables;
+mod function_tables;
+mod gpu;
+mod intersections;
+mod layout;
+mod loop_cap;
+mod parity;
+mod roots;
+mod script;
+mod shaders;
+mod shading_tables;
+mod single_rays;
+mod statistics;
+mod surfaces;
+mod traversal;
+mod traversal_gpu;
+mod triangles;

@@ -1,0 +1,219 @@
+// Rays against the whole scene: a compressed wide hierarchy over the instances, whose leaves lead to one within each
+// mesh (Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017).
+// A group is (base index, bits). For nodes, the high byte says which children are still to be visited, in the order
+// of the ray's octant, and the low byte which children are inner nodes; for primitives, the low 24 bits say which
+// are still to be intersected. So a group of primitives is at most GROUP_PRIMITIVES, and a group of nodes is more.
+
+// Groups that await their turn; src/flatten/bvh.rs builds no hierarchy that needs more.
+const TRAVERSAL_STACK: u32 = 32u;
+// Nodes that one ray may visit, over both levels.
+const TRAVERSAL_TURNS: u32 = 16384u;
+const GROUP_PRIMITIVES: u32 = 0x00ffffffu;
+// 8 * 2^-24: relative error of a box's plane in quantisation, of the distance to it, and of the ray's shear.
+const BOX_ERROR: f32 = 4.7683716e-7;
+// 2^-50: components of the direction are taken to be at least this share of the largest one, so that a reciprocal
+// times zero is a number.
+const MIN_DIRECTION: f32 = 8.8817842e-16;
+
+// The world-space hit nearest to the origin, with t in (0, t_max).
+fn scene_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> Hit {
+    return traverse(origin, direction, t_max, false);
+}
+
+// Whether anything lies in (0, t_max) along the ray.
+fn scene_occluded(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> bool {
+    return traverse(origin, direction, t_max, true).t > 0.0;
+}
+
+fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool) -> Hit {
+    var hit = Hit(MISS, NONE, 0u, 0.0, 0.0);
+    var nearest = t_max;
+    if HAS_PLANE {
+        for (var i = 0u; i < frame.plane_count; i++) {
+            let object_origin = transform_point(instances[i].object_from_world, origin);
+            let object_direction = transform_vector(instances[i].object_from_world, direction);
+            let plane = plane_intersect(object_origin, object_direction, nearest);
+            if plane.t > 0.0 {
+                hit = Hit(plane.t, i, plane.face, 0.0, 0.0);
+                nearest = plane.t;
+                if any_hit { return hit; }
+            }
+        }
+    }
+    if frame.has_root == 0u { return hit; }
+
+    var stack: array<vec2<u32>, TRAVERSAL_STACK>;
+    var height = 0u;
+    // Inside a mesh: the height of the stack at which the ray is back among the instances.
+    var return_height = NONE;
+    var instance = 0u;
+    var triangle_space: TriangleRay;
+    var ray_origin = origin;
+    var inverse = inverse_direction(direction);
+    var octant = octant_bytes(direction);
+    var nodes_left = vec2<u32>(0u, 0x80000000u);
+
+    for (var turn = 0u; ; turn++) {
+        if turn == TRAVERSAL_TURNS {
+            tally.flags |= STATUS_LOOP_BOUND;
+            break;
+        }
+        var primitives_left = vec2<u32>(0u);
+        if nodes_left.y > GROUP_PRIMITIVES {
+            let bit = firstLeadingBit(nodes_left.y);
+            nodes_left.y &= ~(1u << bit);
+            if nodes_left.y > GROUP_PRIMITIVES {
+                if height < TRAVERSAL_STACK {
+                    stack[height] = nodes_left;
+                    height++;
+                } else {
+                    tally.flags |= STATUS_STACK_FULL;
+                }
+            }
+            let slot = (bit - 24u) ^ (octant & 7u);
+            let child = nodes_left.x + countOneBits(nodes_left.y & ~(0xffffffffu << slot));
+            let node = nodes[child];
+            let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
+            nodes_left = vec2<u32>(node.child_base, (bits & ~GROUP_PRIMITIVES) | (node.exponents_imask >> 24u));
+            primitives_left = vec2<u32>(node.primitive_base, bits & GROUP_PRIMITIVES);
+        } else {
+            primitives_left = nodes_left;
+            nodes_left = vec2<u32>(0u);
+        }
+
+        while primitives_left.y != 0u {
+            let bit = firstLeadingBit(primitives_left.y);
+            primitives_left.y &= ~(1u << bit);
+            let index = primitives_left.x + bit;
+            if HAS_MESH && return_height != NONE {
+                let triangle = triangles[index];
+                let met = triangle_intersect(triangle_space, triangle.p0, triangle.p1, triangle.p2, nearest);
+                if met.t > 0.0 {
+                    hit = Hit(met.t, instance, index, met.b1, met.b2);
+                    nearest = met.t;
+                    if any_hit { return hit; }
+                }
+                continue;
+            }
+            let object_origin = transform_point(instances[index].object_from_world, origin);
+            let object_direction = transform_vector(instances[index].object_from_world, direction);
+            if HAS_MESH && instances[index].shape == SHAPE_MESH {
+                if height + 2u <= TRAVERSAL_STACK {
+                    if primitives_left.y != 0u {
+                        stack[height] = primitives_left;
+                        height++;
+                    }
+                    if nodes_left.y > GROUP_PRIMITIVES {
+                        stack[height] = nodes_left;
+                        height++;
+                    }
+                } else {
+                    tally.flags |= STATUS_STACK_FULL;
+                }
+                return_height = height;
+                instance = index;
+                triangle_space = triangle_ray(object_origin, object_direction);
+                ray_origin = object_origin;
+                inverse = inverse_direction(object_direction);
+                octant = octant_bytes(object_direction);
+                nodes_left = vec2<u32>(instances[index].root, 0x80000000u);
+                primitives_left = vec2<u32>(0u);
+            } else {
+                let met = instance_intersect(index, object_origin, object_direction, nearest);
+                if met.t > 0.0 {
+                    hit = Hit(met.t, index, met.face, 0.0, 0.0);
+                    nearest = met.t;
+                    if any_hit { return hit; }
+                }
+            }
+        }
+
+        if nodes_left.y <= GROUP_PRIMITIVES {
+            if height == 0u { break; }
+            if HAS_MESH && height == return_height {
+                return_height = NONE;
+                ray_origin = origin;
+                inverse = inverse_direction(direction);
+                octant = octant_bytes(direction);
+            }
+            height--;
+            nodes_left = stack[height];
+        }
+    }
+    return hit;
+}
+
+// Reciprocals, finite for directions along an axis.
+fn inverse_direction(direction: vec3<f32>) -> vec3<f32> {
+    let least = max(max(abs(direction.x), abs(direction.y)), abs(direction.z)) * MIN_DIRECTION;
+    let magnitude = max(abs(direction), vec3<f32>(least));
+    return 1.0 / select(magnitude, -magnitude, direction < vec3<f32>(0.0));
+}
+
+// In each byte, which components of the direction are not negative (4 for x, 2 for y, 1 for z): children lie in the
+// slot of the octant that they fill, so slot ^ octant puts the nearest highest.
+fn octant_bytes(direction: vec3<f32>) -> u32 {
+    return select(0x04040404u, 0u, direction.x < 0.0)
+        | select(0x02020202u, 0u, direction.y < 0.0)
+        | select(0x01010101u, 0u, direction.z < 0.0);
+}
+
+// The children of a node that the ray meets before t_max: inner nodes in the high byte, by priority, and the
+// primitives of leaves in the low 24 bits.
+fn node_intersect(node: Node, origin: vec3<f32>, inverse: vec3<f32>, octant: u32, t_max: f32) -> u32 {
+    let cell = vec3<f32>(
+        bitcast<f32>((node.exponents_imask & 0xffu) << 23u),
+        bitcast<f32>(((node.exponents_imask >> 8u) & 0xffu) << 23u),
+        bitcast<f32>(((node.exponents_imask >> 16u) & 0xffu) << 23u),
+    );
+    // Grid plane q is met at start + q * step; nearer and farther starts make up for all roundings.
+    let step = cell * inverse;
+    let start = (node.p - origin) * inverse;
+    let slack = BOX_ERROR * (abs(start) + 256.0 * abs(step));
+    let near = start - slack;
+    let far = start + slack;
+
+    let negative = inverse < vec3<f32>(0.0);
+    let near_x = select(node.min_x, node.max_x, negative.x);
+    let far_x = select(node.max_x, node.min_x, negative.x);
+    let near_y = select(node.min_y, node.max_y, negative.y);
+    let far_y = select(node.max_y, node.min_y, negative.y);
+    let near_z = select(node.min_z, node.max_z, negative.z);
+    let far_z = select(node.max_z, node.min_z, negative.z);
+
+    return four_children(
+        node.meta_bytes.x, octant,
+        max(
+            max(unpack_bytes(near_x.x) * step.x + near.x, unpack_bytes(near_y.x) * step.y + near.y),
+            max(unpack_bytes(near_z.x) * step.z + near.z, vec4<f32>(0.0)),
+        ),
+        min(
+            min(unpack_bytes(far_x.x) * step.x + far.x, unpack_bytes(far_y.x) * step.y + far.y),
+            min(unpack_bytes(far_z.x) * step.z + far.z, vec4<f32>(t_max)),
+        ),
+    ) | four_children(
+        node.meta_bytes.y, octant,
+        max(
+            max(unpack_bytes(near_x.y) * step.x + near.x, unpack_bytes(near_y.y) * step.y + near.y),
+            max(unpack_bytes(near_z.y) * step.z + near.z, vec4<f32>(0.0)),
+        ),
+        min(
+            min(unpack_bytes(far_x.y) * step.x + far.x, unpack_bytes(far_y.y) * step.y + far.y),
+            min(unpack_bytes(far_z.y) * step.z + far.z, vec4<f32>(t_max)),
+        ),
+    );
+}
+
+// Where each of four children belongs in the group, if the ray's stretch inside its box is not empty.
+fn four_children(meta_bytes: u32, octant: u32, t_enter: vec4<f32>, t_leave: vec4<f32>) -> u32 {
+    // Inner children have the offsets 24 to 31, which no leaf has: both bits of 24 are set.
+    let inner_mask = (((meta_bytes & (meta_bytes << 1u)) & 0x10101010u) >> 4u) * 0xffu;
+    let shifts = (meta_bytes ^ (octant & inner_mask)) & 0x1f1f1f1fu;
+    let bits = (meta_bytes >> 5u) & 0x07070707u;
+    let met = select(vec4<u32>(0u), unpack4xU8(bits) << unpack4xU8(shifts), t_enter <= t_leave);
+    return met.x | met.y | met.z | met.w;
+}
+
+fn unpack_bytes(word: u32) -> vec4<f32> {
+    return vec4<f32>(unpack4xU8(word));
+}

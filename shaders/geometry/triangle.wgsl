@@ -1,0 +1,91 @@
+// Triangles: the watertight test of Woop, Benthin and Wald (JCGT 2013), normals, and the packing of normals.
+
+// What a ray contributes to the tests: its origin, and the shear that turns its direction into the axis of its
+// largest component, `axis`. The paper's exchange of axes for the winding is left out: both sides are hit.
+struct TriangleRay {
+    origin: vec3<f32>,
+    axis: u32,
+    // (x, y, z) of the paper: direction / its largest component for the two others, and 1 / the largest.
+    shear: vec3<f32>,
+};
+
+// b1 and b2 weigh p1 and p2; t is MISS where there is no hit.
+struct TriangleHit {
+    t: f32,
+    b1: f32,
+    b2: f32,
+};
+
+// The cyclic permutation of v that brings the coordinate `axis` to the last place.
+fn axis_last(v: vec3<f32>, axis: u32) -> vec3<f32> {
+    return select(select(v, v.zxy, axis == 1u), v.yzx, axis == 0u);
+}
+
+fn triangle_ray(origin: vec3<f32>, direction: vec3<f32>) -> TriangleRay {
+    let size = abs(direction);
+    let axis = select(select(1u, 2u, size.z > size.y), select(0u, 2u, size.z > size.x), size.x >= size.y);
+    let d = axis_last(direction, axis);
+    let inverse = safe_reciprocal(d.z);
+    return TriangleRay(origin, axis, vec3<f32>(d.x * inverse, d.y * inverse, inverse));
+}
+
+fn triangle_intersect(ray: TriangleRay, p0: vec3<f32>, p1: vec3<f32>, p2: vec3<f32>, t_max: f32) -> TriangleHit {
+    let a = axis_last(p0 - ray.origin, ray.axis);
+    let b = axis_last(p1 - ray.origin, ray.axis);
+    let c = axis_last(p2 - ray.origin, ray.axis);
+    let ax = a.x - ray.shear.x * a.z;
+    let ay = a.y - ray.shear.y * a.z;
+    let bx = b.x - ray.shear.x * b.z;
+    let by = b.y - ray.shear.y * b.z;
+    let cx = c.x - ray.shear.x * c.z;
+    let cy = c.y - ray.shear.y * c.z;
+    // Two triangles that share an edge see the same two products in it, subtracted one way or the other, so at most
+    // one of them sees it negative. An edge of zero belongs to both: in place of the paper's recourse to double
+    // precision, which decides for one of them, a ray through an edge may meet both at the same t.
+    let u = cx * by - cy * bx;
+    let v = ax * cy - ay * cx;
+    let w = bx * ay - by * ax;
+    let inside = min(min(u, v), w) >= 0.0 || max(max(u, v), w) <= 0.0;
+    let determinant = u + v + w;
+    let inverse = 1.0 / select(determinant, 1.0, determinant == 0.0);
+    let t = (u * a.z + v * b.z + w * c.z) * ray.shear.z * inverse;
+    let hit = inside && determinant != 0.0 && t > 0.0 && t < t_max;
+    return TriangleHit(select(MISS, t, hit), v * inverse, w * inverse);
+}
+
+// A unit vector from its octahedral packing (Cigolle et al., JCGT 2014): two 16-bit snorms, x in the low half.
+fn decode_octahedral(packed: u32) -> vec3<f32> {
+    let x = f32(bitcast<i32>(packed << 16u) >> 16u) / 32767.0;
+    let y = f32(bitcast<i32>(packed) >> 16u) / 32767.0;
+    let z = 1.0 - abs(x) - abs(y);
+    let fold = max(-z, 0.0);
+    let vx = x + select(fold, -fold, x >= 0.0);
+    let vy = y + select(fold, -fold, y >= 0.0);
+    return vec3<f32>(vx, vy, z) / sqrt(vx * vx + vy * vy + z * z);
+}
+
+// Unit normal of the triangle's plane, on the side from which the corners run counterclockwise. A triangle without
+// area has +y.
+fn triangle_geometric_normal(p0: vec3<f32>, p1: vec3<f32>, p2: vec3<f32>) -> vec3<f32> {
+    let e1 = p1 - p0;
+    let e2 = p2 - p0;
+    // Edges are brought to size 1 first: the squares of a small triangle's area underflow.
+    let size = max(max(max(abs(e1.x), abs(e1.y)), abs(e1.z)), max(max(abs(e2.x), abs(e2.y)), abs(e2.z)));
+    let scale = 1.0 / max(size, TINY);
+    let a = e1 * scale;
+    let b = e2 * scale;
+    let x = a.y * b.z - a.z * b.y;
+    let y = a.z * b.x - a.x * b.z;
+    let z = a.x * b.y - a.y * b.x;
+    let length = sqrt(x * x + y * y + z * z);
+    return select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(x, y, z) / max(length, TINY), length > 0.0);
+}
+
+// Unit normal interpolated between those of the corners (packed), b1 and b2 weighing the second and third.
+fn triangle_shading_normal(n0: u32, n1: u32, n2: u32, b1: f32, b2: f32) -> vec3<f32> {
+    let first = decode_octahedral(n0);
+    let n = first * (1.0 - b1 - b2) + decode_octahedral(n1) * b1 + decode_octahedral(n2) * b2;
+    let length = sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+    // Opposite normals cancel: then the first corner's stands.
+    return select(first, n / max(length, TINY), length > 1.0e-6);
+}

@@ -1,0 +1,51 @@
+// One pass of one camera sample for each pixel of a run of 8 x 8 blocks.
+
+// Pixel in its block: eight neighbouring lanes share a patch of 4 x 2 pixels, so that they walk the same nodes.
+fn pixel_in_block(lane: u32) -> vec2<u32> {
+    return vec2<u32>((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 3u) & 6u));
+}
+
+@compute @workgroup_size(64)
+fn render(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    if (group.x >= dispatch.block_count) {
+        return;
+    }
+    // Lavapipe's threads, and the processors of a GPU, take contiguous runs of workgroups: the stride gives each a
+    // share of every part of the picture.
+    let block = dispatch.first_block + (group.x * dispatch.block_stride) % dispatch.block_count;
+    let blocks_across = (frame.image_size.x + 7u) / 8u;
+    let in_band = vec2<u32>(block % blocks_across, block / blocks_across) * 8u + pixel_in_block(lane);
+    if (in_band.x >= frame.image_size.x || in_band.y >= dispatch.band_rows) {
+        return;
+    }
+    let pixel = in_band + vec2<u32>(0u, dispatch.band_row);
+
+    tally = Tally(0u, vec4<u32>(0u));
+    tally.rays[RAY_CAMERA] = 1u;
+    let camera = camera_ray(pixel, dispatch.sample_index);
+    // Passes share a sample: each counts for its part, so that a film sums whole samples.
+    let radiance = path_radiance(camera, dispatch.sample_index) / f32(frame.pass_count);
+    let film_index = in_band.y * frame.image_size.x + in_band.x;
+    film[film_index] = film_add(film[film_index], radiance);
+
+    // Drivers that cap the turns of all loops of an invocation (Mesa before 23: 65,535) leave every loop early from then
+    // on without a word; this one would too.
+    var turns = 0u;
+    for (var turn = 0u; turn < dispatch.canary_turns; turn++) {
+        turns++;
+    }
+    if (turns != dispatch.canary_turns) {
+        tally.flags |= STATUS_LOOP_BOUND;
+    }
+
+    if (tally.flags != 0u) {
+        atomicOr(&status.flags, tally.flags);
+    }
+    // Counters are spread over slots, since all invocations add to them.
+    let slot = block % RAY_SLOTS;
+    for (var kind = 0u; kind < RAY_KINDS; kind++) {
+        if (tally.rays[kind] > 0u) {
+            atomicAdd(&status.rays[kind * RAY_SLOTS + slot], tally.rays[kind]);
+        }
+    }
+}

@@ -1,0 +1,41 @@
+// Elementary functions of our own, since those of drivers differ in their last bits and more (lavapipe's pow by 17 ulp).
+
+// Base-2 logarithm of a positive normal number, from log2(m) = 2/ln2 artanh((m - 1) / (m + 1)) with m in
+// [1/sqrt2, sqrt2); absolute error below 2e-7 beside the integer part.
+fn log2_poly(x: f32) -> f32 {
+    let bits = bitcast<u32>(x);
+    // 0x3f3504f3 is 1/sqrt2: the exponent counts from there.
+    let shifted = bits - 0x3f3504f3u;
+    let exponent = bitcast<i32>(shifted) >> 23u;
+    let m = bitcast<f32>((shifted & 0x007fffffu) + 0x3f3504f3u);
+    let s = (m - 1.0) / (m + 1.0);
+    let q = s * s;
+    var series = 0.11111111 * q + 0.14285715;
+    series = series * q + 0.2;
+    series = series * q + 0.33333334;
+    series = series * q;
+    return f32(exponent) + 2.8853900 * (s + s * series);
+}
+
+// 2^x, 0 below -126 and 2^127 above 127; relative error below 3e-7.
+fn exp2_poly(x: f32) -> f32 {
+    let clamped = clamp(x, -126.0, 127.0);
+    let whole = floor(clamped + 0.5);
+    let t = (clamped - whole) * 0.6931472;
+    var series = t * 0.00019841270 + 0.0013888889;
+    series = series * t + 0.0083333333;
+    series = series * t + 0.041666668;
+    series = series * t + 0.16666667;
+    series = series * t + 0.5;
+    series = series * t + 1.0;
+    series = series * t + 1.0;
+    let scale = bitcast<f32>(u32(i32(whole) + 127) << 23u);
+    return select(series * scale, 0.0, x < -126.0);
+}
+
+// base^exponent for base and exponent >= 0; 0^0 is 1.
+fn power(base: f32, exponent: f32) -> f32 {
+    let safe = max(base, 1.1754944e-38);
+    let result = exp2_poly(exponent * log2_poly(safe));
+    return select(result, select(0.0, 1.0, exponent == 0.0), base < 1.1754944e-38);
+}

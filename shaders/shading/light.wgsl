@@ -1,0 +1,87 @@
+// Lights: where shadow rays aim, and what arrives.
+
+// A point on the light as seen from `point` (world space): the point itself, uniform over a parallelogram, or uniform in
+// the solid angle of a ball (a point within the ball sees its whole surface).
+fn sample_light(light: Light, point: vec3<f32>, xi: vec2<f32>) -> vec3<f32> {
+    if (!HAS_AREA_LIGHT || light.kind == LIGHT_POINT) {
+        return light.position;
+    }
+    if (light.kind == LIGHT_PARALLELOGRAM) {
+        return light.position + (xi.x - 0.5) * light.u + (xi.y - 0.5) * light.v;
+    }
+    let to_centre = light.position - point;
+    let distance_squared = dot(to_centre, to_centre);
+    let radius_squared = light.radius * light.radius;
+    if (distance_squared <= radius_squared) {
+        return light.position + light.radius * sample_cone(vec3<f32>(0.0, 0.0, 1.0), 2.0, xi);
+    }
+    // 1 - cos of the cone that touches the ball, without cancellation (pbrt-v4, section 6.2.4).
+    let sine_squared = radius_squared / distance_squared;
+    let one_minus_cos = sine_squared / (1.0 + sqrt(1.0 - sine_squared));
+    let axis = to_centre / sqrt(distance_squared);
+    let direction = sample_cone(axis, one_minus_cos, xi);
+    let along = dot(direction, to_centre);
+    let half_chord = sqrt(max(radius_squared - max(distance_squared - along * along, 0.0), 0.0));
+    return point + (along - half_chord) * direction;
+}
+
+// Share of the light's colour that arrives over `distance` (world units).
+fn attenuation(light: Light, distance: f32) -> f32 {
+    let c = light.falloff;
+    return 1.0 / max(c.x + c.y * distance + c.z * distance * distance, 1e-20);
+}
+
+// Light from the lights that a surface sends to the viewer: Whitted's sum, with soft shadows by distributed shadow rays
+// (Cook, Porter, Carpenter 1984, section 4). v is the unit vector to the viewer; index and key number the ray that
+// came. At depth 0 a pass takes its slice of light_count * shadow_count samples; deeper, each light gets one, or where
+// lights are many a stratified choice of them.
+fn direct_light(surface: Surface, material: Material, v: vec3<f32>, index: u32, key: u32, depth: u32) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    var first = 0u;
+    var last = frame.deep_light_samples;
+    if (depth == 0u) {
+        first = dispatch.pass_index * frame.light_samples;
+        last = min(first + frame.light_samples, frame.light_count * frame.shadow_count);
+    }
+    let blinn = (frame.flags & FRAME_BLINN) != 0u;
+    let origin = offset_ray_origin(surface.point, surface.geometric_normal);
+    for (var sample = first; sample < last; sample++) {
+        var light_index = sample;
+        var split_index = index;
+        var weight = 1.0;
+        if (depth == 0u) {
+            light_index = sample / frame.shadow_count;
+            split_index = index * frame.shadow_count + sample % frame.shadow_count;
+            weight = f32(frame.pass_count) / f32(frame.shadow_count);
+        } else if (frame.light_count > frame.deep_light_samples) {
+            let choice = sobol_2d(index, hash_combine(key, DIMENSION_LIGHT_CHOICE)).x;
+            let share = f32(frame.light_count) / f32(frame.deep_light_samples);
+            light_index = min(u32((f32(sample) + choice) * share), frame.light_count - 1u);
+            weight = share;
+        }
+        let light = lights[light_index];
+        var xi = vec2<f32>(0.5);
+        if (HAS_AREA_LIGHT) {
+            xi = sobol_2d(split_index, hash_combine(key, DIMENSION_LIGHT + light_index));
+        }
+        let target_point = sample_light(light, surface.point, xi);
+        let to_light = target_point - surface.point;
+        let distance = sqrt(dot(to_light, to_light));
+        let l = to_light / max(distance, 1e-20);
+        // A normal that interpolation or a map has turned must not let in light from below the true surface.
+        let above = dot(surface.geometric_normal, l) > 0.0 && dot(surface.shading_normal, l) > 0.0;
+        if (!above) {
+            continue;
+        }
+        tally.rays[RAY_SHADOW] += 1u;
+        if (scene_occluded(origin, target_point - origin, SHADOW_T_MAX)) {
+            continue;
+        }
+        let reflected = phong(material, surface.shading_normal, l, v, blinn);
+        sum += (weight * attenuation(light, distance)) * (light.colour * reflected);
+    }
+    return sum;
+}
+
+// A shadow ray runs from t = 0 to the light at t = 1; a surface that carries the light does not shade it.
+const SHADOW_T_MAX: f32 = 0.9999;

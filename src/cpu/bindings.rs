@@ -1,5 +1,6 @@
 //! What the kernel binds, as the CPU functions take it; twin of `shaders/bindings.wgsl`.
 
+use crate::flatten::SceneBuffers;
 use crate::layout::{Frame, Instance, Light, Material, Node, Triangle};
 
 #[derive(Clone, Copy)]
@@ -11,4 +12,19 @@ pub struct Bindings<'a> {
     pub materials: &'a [Material],
     pub lights: &'a [Light],
     pub texels: &'a [u32],
+}
+
+impl<'a> Bindings<'a> {
+    /// The buffers of a scene with constants of their own.
+    pub fn new(scene: &'a SceneBuffers, frame: &'a Frame) -> Self {
+        Bindings {
+            frame,
+            nodes: &scene.nodes,
+            instances: &scene.instances,
+            triangles: &scene.triangles,
+            materials: &scene.materials,
+            lights: &scene.lights,
+            texels: &scene.texels,
+        }
+    }
 }

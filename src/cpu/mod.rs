@@ -2,7 +2,13 @@
 
 pub mod bindings;
 pub mod camera;
+pub mod film;
 pub mod geometry;
 pub mod math;
+pub mod media;
 pub mod path;
 pub mod shading;
+
+mod renderer;
+
+pub use renderer::CpuRenderer;

@@ -1,15 +1,103 @@
 //! From the scene graph to the buffers that both renderers read.
 
+mod binned;
+mod bounds;
+mod bvh;
+mod features;
+mod frame;
+mod instances;
+mod lights;
+mod materials;
+mod mesh;
+mod walk;
+mod work;
+
+pub use bvh::TRAVERSAL_STACK;
+pub use features::FeatureSet;
+pub use mesh::encode_octahedral;
+pub use work::{MAX_DEEP_LIGHT_SAMPLES, MAX_GLOSSY_SAMPLES, MAX_LIGHT_SAMPLES, WorkPlan, plan_work};
+
+use crate::Result;
 use crate::layout::{Frame, Instance, Light, Material, Node, Triangle};
+use crate::scene::{Sampling, Scene};
+use std::time::Instant;
 
 /// Everything that the renderers read; `layout` says what each field holds.
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuffers {
     pub frame: Frame,
+    /// The hierarchy over the instances, root first, then one for each mesh.
     pub nodes: Vec<Node>,
+    /// Infinite planes first (`frame.plane_count`), then the leaves of the hierarchy in its order.
     pub instances: Vec<Instance>,
+    /// Mesh after mesh, each in the order of its hierarchy's leaves.
     pub triangles: Vec<Triangle>,
+    /// Those in use.
     pub materials: Vec<Material>,
     pub lights: Vec<Light>,
     pub texels: Vec<u32>,
+    /// The rays that the scene asks for.
+    pub sampling: Sampling,
+    /// What the kernel is specialised to.
+    pub features: FeatureSet,
+    /// What flattening did, for messages.
+    pub statistics: Statistics,
+}
+
+/// What flattening did, for messages.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Different meshes, each stored once.
+    pub meshes: usize,
+    /// Triangles over all instances, as if each were a copy.
+    pub instanced_triangles: u64,
+    /// Triangles without an area, left out.
+    pub degenerate_triangles: usize,
+    /// Levels of nodes from the root to the deepest leaf, over both levels of the hierarchy.
+    pub depth: u32,
+    /// Wall-clock time of flattening, seconds.
+    pub seconds: f64,
+}
+
+/// Flattens a scene: one instance for each path from the root to a geometry node, meshes stored once.
+///
+/// # Errors
+/// [`crate::Error::Scene`] where the graph has a cycle or too many paths, where a transform cannot be inverted or
+/// leaves the range of f32, where a mesh refers to vertices that it lacks, or where the camera is degenerate.
+pub fn flatten(scene: &Scene) -> Result<SceneBuffers> {
+    let start = Instant::now();
+    let placements = walk::placements(scene)?;
+    let meshes = mesh::build_all(&placements)?;
+    let (materials, material_indices) = materials::materials_in_use(scene, &placements)?;
+    let built = instances::build(&scene.graph, &placements, &meshes, &material_indices)?;
+    let lights = lights::lights(scene)?;
+    let frame = frame::frame(scene, built.plane_count, !built.nodes.is_empty())?;
+
+    let mut nodes = built.nodes;
+    let mut triangles = Vec::with_capacity(meshes.built.iter().map(|mesh| mesh.triangles.len()).sum());
+    for mesh in &meshes.built {
+        bvh::append(&mut nodes, &mesh.hierarchy.nodes, triangles.len() as u32);
+        triangles.extend_from_slice(&mesh.triangles);
+    }
+    let mut buffers = SceneBuffers {
+        frame,
+        nodes,
+        instances: built.instances,
+        triangles,
+        materials,
+        lights,
+        texels: Vec::new(),
+        sampling: scene.sampling,
+        features: FeatureSet::ALL_OFF,
+        statistics: Statistics {
+            meshes: meshes.built.len(),
+            instanced_triangles: built.instanced_triangles,
+            degenerate_triangles: meshes.built.iter().map(|mesh| mesh.degenerate).sum(),
+            depth: built.depth,
+            seconds: 0.0,
+        },
+    };
+    buffers.features = FeatureSet::of(&buffers);
+    buffers.statistics.seconds = start.elapsed().as_secs_f64();
+    Ok(buffers)
 }

@@ -1,1 +1,274 @@
+//! Rays against the whole scene; twin of `shaders/geometry/bvh.wgsl`, where the method and the groups are described.
+//!
+//! The order in which nodes and primitives are visited is the same, so that ties fall to the same primitive.
 
+use super::hit::{Hit, MISS};
+use super::instance::{instance_intersect, transform_point, transform_vector};
+use super::plane::plane_intersect;
+use super::triangle::{TriangleRay, triangle_intersect, triangle_ray};
+use crate::cpu::bindings::Bindings;
+use crate::layout::{NONE, Node, SHAPE_MESH, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
+use crate::renderer::Tally;
+use glam::{UVec2, Vec3};
+
+/// Groups that await their turn; the builder makes no hierarchy that needs more.
+const TRAVERSAL_STACK: usize = crate::flatten::TRAVERSAL_STACK as usize;
+const TRAVERSAL_TURNS: u32 = 16384;
+const GROUP_PRIMITIVES: u32 = 0x00ff_ffff;
+const BOX_ERROR: f32 = 4.768_371_6e-7;
+const MIN_DIRECTION: f32 = 8.881_784_2e-16;
+
+/// The world-space hit nearest to the origin, with t in (0, t_max); t is [`MISS`] where there is none.
+pub fn scene_intersect(scene: &Bindings, origin: Vec3, direction: Vec3, t_max: f32, tally: &mut Tally) -> Hit {
+    traverse::<false>(scene, origin, direction, t_max, tally)
+}
+
+/// Whether anything lies in (0, t_max) along the ray.
+pub fn scene_occluded(scene: &Bindings, origin: Vec3, direction: Vec3, t_max: f32, tally: &mut Tally) -> bool {
+    traverse::<true>(scene, origin, direction, t_max, tally).t > 0.0
+}
+
+/// The groups that await their turn.
+struct Stack {
+    groups: [UVec2; TRAVERSAL_STACK],
+    height: usize,
+}
+
+impl Stack {
+    #[inline]
+    fn push(&mut self, group: UVec2, tally: &mut Tally) {
+        match self.groups.get_mut(self.height) {
+            Some(place) => {
+                *place = group;
+                self.height += 1;
+            }
+            None => tally.flags |= STATUS_STACK_FULL,
+        }
+    }
+
+    #[inline]
+    fn pop(&mut self) -> Option<UVec2> {
+        self.height = self.height.checked_sub(1)?;
+        self.groups.get(self.height).copied()
+    }
+}
+
+fn traverse<const ANY_HIT: bool>(
+    scene: &Bindings,
+    origin: Vec3,
+    direction: Vec3,
+    t_max: f32,
+    tally: &mut Tally,
+) -> Hit {
+    let mut hit = Hit { t: MISS, instance: NONE, primitive: 0, b1: 0.0, b2: 0.0 };
+    let mut nearest = t_max;
+    for (i, instance) in (0..scene.frame.plane_count).zip(scene.instances) {
+        let object_origin = transform_point(&instance.object_from_world, origin);
+        let object_direction = transform_vector(&instance.object_from_world, direction);
+        let plane = plane_intersect(object_origin, object_direction, nearest);
+        if plane.t > 0.0 {
+            hit = Hit { t: plane.t, instance: i, primitive: plane.face, b1: 0.0, b2: 0.0 };
+            nearest = plane.t;
+            if ANY_HIT {
+                return hit;
+            }
+        }
+    }
+    if scene.frame.has_root == 0 {
+        return hit;
+    }
+
+    let mut stack = Stack { groups: [UVec2::ZERO; TRAVERSAL_STACK], height: 0 };
+    // Inside a mesh: its instance, its ray, and the height of the stack at which the ray is back among the instances.
+    let mut mesh: Option<(u32, TriangleRay, usize)> = None;
+    let mut ray_origin = origin;
+    let mut inverse = inverse_direction(direction);
+    let mut octant = octant_bytes(direction);
+    let mut nodes_left = UVec2::new(0, 0x8000_0000);
+
+    for turn in 0.. {
+        if turn == TRAVERSAL_TURNS {
+            tally.flags |= STATUS_LOOP_BOUND;
+            break;
+        }
+        let mut primitives_left;
+        if nodes_left.y > GROUP_PRIMITIVES {
+            let bit = first_leading_bit(nodes_left.y);
+            nodes_left.y &= !(1 << bit);
+            if nodes_left.y > GROUP_PRIMITIVES {
+                stack.push(nodes_left, tally);
+            }
+            let slot = (bit - 24) ^ (octant & 7);
+            let child = nodes_left.x + (nodes_left.y & !(0xffff_ffff << slot)).count_ones();
+            let node = &scene.nodes[child as usize];
+            let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
+            nodes_left = UVec2::new(node.child_base, (bits & !GROUP_PRIMITIVES) | (node.exponents_imask >> 24));
+            primitives_left = UVec2::new(node.primitive_base, bits & GROUP_PRIMITIVES);
+        } else {
+            primitives_left = nodes_left;
+            nodes_left = UVec2::ZERO;
+        }
+
+        while primitives_left.y != 0 {
+            let bit = first_leading_bit(primitives_left.y);
+            primitives_left.y &= !(1 << bit);
+            let index = primitives_left.x + bit;
+            if let Some((instance, triangle_space, _)) = &mesh {
+                let triangle = &scene.triangles[index as usize];
+                let met = triangle_intersect(triangle_space, triangle.p0, triangle.p1, triangle.p2, nearest);
+                if met.t > 0.0 {
+                    hit = Hit { t: met.t, instance: *instance, primitive: index, b1: met.b1, b2: met.b2 };
+                    nearest = met.t;
+                    if ANY_HIT {
+                        return hit;
+                    }
+                }
+                continue;
+            }
+            let instance = &scene.instances[index as usize];
+            let object_origin = transform_point(&instance.object_from_world, origin);
+            let object_direction = transform_vector(&instance.object_from_world, direction);
+            if instance.shape == SHAPE_MESH {
+                if primitives_left.y != 0 {
+                    stack.push(primitives_left, tally);
+                }
+                if nodes_left.y > GROUP_PRIMITIVES {
+                    stack.push(nodes_left, tally);
+                }
+                mesh = Some((index, triangle_ray(object_origin, object_direction), stack.height));
+                ray_origin = object_origin;
+                inverse = inverse_direction(object_direction);
+                octant = octant_bytes(object_direction);
+                nodes_left = UVec2::new(instance.root, 0x8000_0000);
+                primitives_left = UVec2::ZERO;
+            } else {
+                let met = instance_intersect(scene, index, object_origin, object_direction, nearest);
+                if met.t > 0.0 {
+                    hit = Hit { t: met.t, instance: index, primitive: met.face, b1: 0.0, b2: 0.0 };
+                    nearest = met.t;
+                    if ANY_HIT {
+                        return hit;
+                    }
+                }
+            }
+        }
+
+        if nodes_left.y <= GROUP_PRIMITIVES {
+            if mesh.as_ref().is_some_and(|(_, _, return_height)| stack.height == *return_height) {
+                mesh = None;
+                ray_origin = origin;
+                inverse = inverse_direction(direction);
+                octant = octant_bytes(direction);
+            }
+            match stack.pop() {
+                Some(group) => nodes_left = group,
+                None => break,
+            }
+        }
+    }
+    hit
+}
+
+/// `firstLeadingBit` of WGSL, for words that are not 0.
+#[inline]
+fn first_leading_bit(word: u32) -> u32 {
+    31 - word.leading_zeros()
+}
+
+/// Reciprocals, finite for directions along an axis.
+#[inline]
+pub fn inverse_direction(direction: Vec3) -> Vec3 {
+    let least = direction.x.abs().max(direction.y.abs()).max(direction.z.abs()) * MIN_DIRECTION;
+    let reciprocal = |component: f32| {
+        let magnitude = component.abs().max(least);
+        1.0 / if component < 0.0 { -magnitude } else { magnitude }
+    };
+    Vec3::new(reciprocal(direction.x), reciprocal(direction.y), reciprocal(direction.z))
+}
+
+/// In each byte, which components of the direction are not negative (4 for x, 2 for y, 1 for z): children lie in the
+/// slot of the octant that they fill, so slot ^ octant puts the nearest highest.
+#[inline]
+pub fn octant_bytes(direction: Vec3) -> u32 {
+    (if direction.x < 0.0 { 0 } else { 0x0404_0404 })
+        | (if direction.y < 0.0 { 0 } else { 0x0202_0202 })
+        | (if direction.z < 0.0 { 0 } else { 0x0101_0101 })
+}
+
+/// The children of a node that the ray meets before t_max: inner nodes in the high byte, by priority, and the
+/// primitives of leaves in the low 24 bits.
+#[inline]
+pub fn node_intersect(node: &Node, origin: Vec3, inverse: Vec3, octant: u32, t_max: f32) -> u32 {
+    let cell = Vec3::new(
+        f32::from_bits((node.exponents_imask & 0xff) << 23),
+        f32::from_bits(((node.exponents_imask >> 8) & 0xff) << 23),
+        f32::from_bits(((node.exponents_imask >> 16) & 0xff) << 23),
+    );
+    // Grid plane q is met at start + q * step; nearer and farther starts make up for all roundings.
+    let step = cell * inverse;
+    let start = (node.p - origin) * inverse;
+    let slack = BOX_ERROR * (start.abs() + 256.0 * step.abs());
+    let near = start - slack;
+    let far = start + slack;
+
+    let (near_x, far_x) = if inverse.x < 0.0 { (node.max_x, node.min_x) } else { (node.min_x, node.max_x) };
+    let (near_y, far_y) = if inverse.y < 0.0 { (node.max_y, node.min_y) } else { (node.min_y, node.max_y) };
+    let (near_z, far_z) = if inverse.z < 0.0 { (node.max_z, node.min_z) } else { (node.min_z, node.max_z) };
+
+    let near_x = unpack_bytes(near_x);
+    let near_y = unpack_bytes(near_y);
+    let near_z = unpack_bytes(near_z);
+    let far_x = unpack_bytes(far_x);
+    let far_y = unpack_bytes(far_y);
+    let far_z = unpack_bytes(far_z);
+    let mut met = 0;
+    for i in 0..8 {
+        let t_enter = larger(
+            larger(near_x[i] * step.x + near.x, near_y[i] * step.y + near.y),
+            larger(near_z[i] * step.z + near.z, 0.0),
+        );
+        let t_leave = smaller(
+            smaller(far_x[i] * step.x + far.x, far_y[i] * step.y + far.y),
+            smaller(far_z[i] * step.z + far.z, t_max),
+        );
+        met |= u32::from(t_enter <= t_leave) << i;
+    }
+    child_bits(node, octant, met)
+}
+
+/// Where each of the children that are met (bit i: child i) belongs in the group.
+#[inline]
+fn child_bits(node: &Node, octant: u32, mut met: u32) -> u32 {
+    let meta_bytes = u64::from(node.meta_bytes.x) | (u64::from(node.meta_bytes.y) << 32);
+    let octant = u64::from(octant) | (u64::from(octant) << 32);
+    // Inner children have the offsets 24 to 31, which no leaf has: both bits of 24 are set.
+    let inner_mask = (((meta_bytes & (meta_bytes << 1)) & 0x1010_1010_1010_1010) >> 4) * 0xff;
+    let shifts = (meta_bytes ^ (octant & inner_mask)) & 0x1f1f_1f1f_1f1f_1f1f;
+    let bits = (meta_bytes >> 5) & 0x0707_0707_0707_0707;
+    let mut result = 0;
+    while met != 0 {
+        let byte = 8 * met.trailing_zeros();
+        met &= met - 1;
+        result |= ((bits >> byte) as u32 & 0xff) << ((shifts >> byte) as u32 & 0x1f);
+    }
+    result
+}
+
+#[inline]
+fn unpack_bytes(words: UVec2) -> [f32; 8] {
+    let low = words.x.to_le_bytes();
+    let high = words.y.to_le_bytes();
+    [low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]].map(f32::from)
+}
+
+/// `max` as one instruction: unlike `f32::max` it takes no care of NaN.
+#[inline]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// `min` as one instruction: unlike `f32::min` it takes no care of NaN.
+#[inline]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}

@@ -1,1 +1,125 @@
+//! Triangles: the watertight test of Woop, Benthin and Wald (JCGT 2013), normals, and the packing of normals; twin of
+//! `shaders/geometry/triangle.wgsl`, where the method is explained.
 
+use super::hit::MISS;
+use crate::cpu::math::roots::{TINY, safe_reciprocal};
+use glam::Vec3;
+
+/// What a ray contributes to the tests: its origin, and the shear that turns its direction into `axis`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriangleRay {
+    pub origin: Vec3,
+    pub axis: u32,
+    /// Direction / its largest component for the two others, and 1 / the largest.
+    pub shear: Vec3,
+}
+
+/// b1 and b2 weigh p1 and p2; t is [`MISS`] where there is no hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriangleHit {
+    pub t: f32,
+    pub b1: f32,
+    pub b2: f32,
+}
+
+/// The cyclic permutation of v that brings the coordinate `axis` to the last place.
+#[inline]
+fn axis_last(v: Vec3, axis: u32) -> Vec3 {
+    match axis {
+        0 => Vec3::new(v.y, v.z, v.x),
+        1 => Vec3::new(v.z, v.x, v.y),
+        _ => v,
+    }
+}
+
+/// Prepares a ray in object space; once for all triangles that it is tested against.
+#[inline]
+pub fn triangle_ray(origin: Vec3, direction: Vec3) -> TriangleRay {
+    let size = direction.abs();
+    let axis = match (size.x >= size.y, size.z > size.x, size.z > size.y) {
+        (true, false, _) => 0,
+        (false, _, false) => 1,
+        _ => 2,
+    };
+    let d = axis_last(direction, axis);
+    let inverse = safe_reciprocal(d.z);
+    TriangleRay { origin, axis, shear: Vec3::new(d.x * inverse, d.y * inverse, inverse) }
+}
+
+/// Hit in (0, t_max), from either side.
+#[inline]
+pub fn triangle_intersect(ray: &TriangleRay, p0: Vec3, p1: Vec3, p2: Vec3, t_max: f32) -> TriangleHit {
+    let a = axis_last(p0 - ray.origin, ray.axis);
+    let b = axis_last(p1 - ray.origin, ray.axis);
+    let c = axis_last(p2 - ray.origin, ray.axis);
+    let ax = a.x - ray.shear.x * a.z;
+    let ay = a.y - ray.shear.y * a.z;
+    let bx = b.x - ray.shear.x * b.z;
+    let by = b.y - ray.shear.y * b.z;
+    let cx = c.x - ray.shear.x * c.z;
+    let cy = c.y - ray.shear.y * c.z;
+    // An edge of zero belongs to both triangles that share it.
+    let u = cx * by - cy * bx;
+    let v = ax * cy - ay * cx;
+    let w = bx * ay - by * ax;
+    let inside = u.min(v).min(w) >= 0.0 || u.max(v).max(w) <= 0.0;
+    let determinant = u + v + w;
+    let inverse = 1.0 / if determinant == 0.0 { 1.0 } else { determinant };
+    let t = (u * a.z + v * b.z + w * c.z) * ray.shear.z * inverse;
+    let hit = inside && determinant != 0.0 && t > 0.0 && t < t_max;
+    TriangleHit { t: if hit { t } else { MISS }, b1: v * inverse, b2: w * inverse }
+}
+
+/// A unit vector from its octahedral packing (Cigolle et al., JCGT 2014): two 16-bit snorms, x in the low half.
+#[inline]
+pub fn decode_octahedral(packed: u32) -> Vec3 {
+    let x = f32::from(packed as u16 as i16) / 32767.0;
+    let y = f32::from((packed >> 16) as u16 as i16) / 32767.0;
+    let z = 1.0 - x.abs() - y.abs();
+    let fold = (-z).max(0.0);
+    let vx = x + if x >= 0.0 { -fold } else { fold };
+    let vy = y + if y >= 0.0 { -fold } else { fold };
+    Vec3::new(vx, vy, z) / (vx * vx + vy * vy + z * z).sqrt()
+}
+
+/// The octahedral packing of a direction of any length but zero; decoding is off by 7e-5 radians at most. Only the
+/// host packs, so this has no twin.
+pub fn encode_octahedral(direction: Vec3) -> u32 {
+    let n = direction / (direction.x.abs() + direction.y.abs() + direction.z.abs());
+    let (x, y) = if n.z >= 0.0 {
+        (n.x, n.y)
+    } else {
+        // The lower half is folded over the diagonals.
+        ((1.0 - n.y.abs()).copysign(n.x), (1.0 - n.x.abs()).copysign(n.y))
+    };
+    let snorm = |v: f32| u32::from((v.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
+    snorm(x) | snorm(y) << 16
+}
+
+/// Unit normal of the triangle's plane, on the side from which the corners run counterclockwise; +y where it has no
+/// area.
+#[inline]
+pub fn triangle_geometric_normal(p0: Vec3, p1: Vec3, p2: Vec3) -> Vec3 {
+    let e1 = p1 - p0;
+    let e2 = p2 - p0;
+    // Edges are brought to size 1 first: the squares of a small triangle's area underflow.
+    let size = e1.x.abs().max(e1.y.abs()).max(e1.z.abs()).max(e2.x.abs().max(e2.y.abs()).max(e2.z.abs()));
+    let scale = 1.0 / size.max(TINY);
+    let a = e1 * scale;
+    let b = e2 * scale;
+    let x = a.y * b.z - a.z * b.y;
+    let y = a.z * b.x - a.x * b.z;
+    let z = a.x * b.y - a.y * b.x;
+    let length = (x * x + y * y + z * z).sqrt();
+    if length > 0.0 { Vec3::new(x, y, z) / length.max(TINY) } else { Vec3::Y }
+}
+
+/// Unit normal interpolated between those of the corners (packed), b1 and b2 weighing the second and third.
+#[inline]
+pub fn triangle_shading_normal(n0: u32, n1: u32, n2: u32, b1: f32, b2: f32) -> Vec3 {
+    let first = decode_octahedral(n0);
+    let n = first * (1.0 - b1 - b2) + decode_octahedral(n1) * b1 + decode_octahedral(n2) * b2;
+    let length = (n.x * n.x + n.y * n.y + n.z * n.z).sqrt();
+    // Opposite normals cancel: then the first corner's stands.
+    if length > 1.0e-6 { n / length.max(TINY) } else { first }
+}

@@ -1,0 +1,102 @@
+//! What a scene uses; the rest is compiled out of the kernel.
+
+use super::SceneBuffers;
+use crate::layout;
+
+/// One field for each `override` constant of `shaders/bindings.wgsl`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct FeatureSet {
+    pub sphere: bool,
+    pub cube: bool,
+    pub cylinder: bool,
+    pub cone: bool,
+    pub torus: bool,
+    pub plane: bool,
+    pub mesh: bool,
+    /// A material that reflects, be it by total internal reflection.
+    pub reflection: bool,
+    /// A material with a refractive index.
+    pub refraction: bool,
+    /// A material that spreads its reflection.
+    pub glossy: bool,
+    /// A light that is not a point.
+    pub area_light: bool,
+    /// A camera whose lens is not a pinhole.
+    pub lens: bool,
+}
+
+impl FeatureSet {
+    pub const ALL_OFF: FeatureSet = FeatureSet {
+        sphere: false,
+        cube: false,
+        cylinder: false,
+        cone: false,
+        torus: false,
+        plane: false,
+        mesh: false,
+        reflection: false,
+        refraction: false,
+        glossy: false,
+        area_light: false,
+        lens: false,
+    };
+
+    pub const ALL_ON: FeatureSet = FeatureSet {
+        sphere: true,
+        cube: true,
+        cylinder: true,
+        cone: true,
+        torus: true,
+        plane: true,
+        mesh: true,
+        reflection: true,
+        refraction: true,
+        glossy: true,
+        area_light: true,
+        lens: true,
+    };
+
+    /// What these buffers need.
+    pub fn of(buffers: &SceneBuffers) -> Self {
+        let mut shapes = [false; layout::SHAPE_MESH as usize + 1];
+        for instance in &buffers.instances {
+            if let Some(used) = shapes.get_mut(instance.shape as usize) {
+                *used = true;
+            }
+        }
+        let has = |shape: u32| shapes[shape as usize];
+        let materials = &buffers.materials;
+        FeatureSet {
+            sphere: has(layout::SHAPE_SPHERE),
+            cube: has(layout::SHAPE_CUBE),
+            cylinder: has(layout::SHAPE_CYLINDER),
+            cone: has(layout::SHAPE_CONE),
+            torus: has(layout::SHAPE_TORUS),
+            plane: has(layout::SHAPE_PLANE),
+            mesh: has(layout::SHAPE_MESH),
+            reflection: materials.iter().any(|material| material.reflection != 0.0 || material.ior != 0.0),
+            refraction: materials.iter().any(|material| material.ior != 0.0),
+            glossy: materials.iter().any(|material| material.reflection != 0.0 && material.glossy != 0.0),
+            area_light: buffers.lights.iter().any(|light| light.kind != layout::LIGHT_POINT),
+            lens: buffers.frame.lens_edge != 0.0,
+        }
+    }
+
+    /// The `override` constants of the kernel and their values.
+    pub fn overrides(&self) -> Vec<(&'static str, bool)> {
+        vec![
+            ("HAS_SPHERE", self.sphere),
+            ("HAS_CUBE", self.cube),
+            ("HAS_CYLINDER", self.cylinder),
+            ("HAS_CONE", self.cone),
+            ("HAS_TORUS", self.torus),
+            ("HAS_PLANE", self.plane),
+            ("HAS_MESH", self.mesh),
+            ("HAS_REFLECTION", self.reflection),
+            ("HAS_REFRACTION", self.refraction),
+            ("HAS_GLOSSY", self.glossy),
+            ("HAS_AREA_LIGHT", self.area_light),
+            ("HAS_LENS", self.lens),
+        ]
+    }
+}

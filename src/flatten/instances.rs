@@ -1,0 +1,141 @@
+//! Placements as instances in the kernel's layout, and the hierarchy over them.
+
+use super::bounds::shape_bounds;
+use super::bvh;
+use super::materials::MaterialIndices;
+use super::mesh::Meshes;
+use super::walk::Placement;
+use crate::layout::{
+    AffineRows, Instance, NONE, Node, SHAPE_CONE, SHAPE_CUBE, SHAPE_CYLINDER, SHAPE_MESH, SHAPE_PLANE, SHAPE_SPHERE,
+    SHAPE_TORUS,
+};
+use crate::scene::{SceneGraph, Shape};
+use crate::{Error, Result};
+use glam::{DAffine3, DVec3, Vec4};
+use obvhs::aabb::Aabb;
+
+/// World coordinates beyond this have areas that single precision cannot add up.
+const MAX_COORDINATE: f64 = 1e12;
+
+/// The upper level of the hierarchy and what it is over.
+pub struct BuiltInstances {
+    pub instances: Vec<Instance>,
+    pub plane_count: u32,
+    /// Root first; empty where there are only planes.
+    pub nodes: Vec<Node>,
+    /// Triangles over all instances.
+    pub instanced_triangles: u64,
+    /// Levels of nodes, those of the deepest mesh included.
+    pub depth: u32,
+}
+
+pub fn build(
+    graph: &SceneGraph,
+    placements: &[Placement],
+    meshes: &Meshes,
+    materials: &MaterialIndices,
+) -> Result<BuiltInstances> {
+    let mut planes = Vec::new();
+    let mut bounded = Vec::with_capacity(placements.len());
+    let mut boxes = Vec::with_capacity(placements.len());
+    let mut instanced_triangles = 0;
+    for placement in placements {
+        let name = &graph.node(placement.node).name;
+        let mut instance = pack(placement, name)?;
+        instance.material = materials.get(&placement.material).copied().unwrap_or(0);
+        let bounds = match &placement.geometry.shape {
+            Shape::Mesh(mesh) => {
+                // The node's index in `meshes` stands in for the root until the mesh has its place.
+                let Some(index) = meshes.index_of(mesh) else { continue };
+                let mesh = &meshes.built[index];
+                if mesh.triangles.is_empty() {
+                    continue;
+                }
+                instance.root = index as u32;
+                instance.parameters = mesh.uv_rectangle;
+                instanced_triangles += mesh.triangles.len() as u64;
+                mesh.bounds.transformed(&placement.world_from_object)
+            }
+            shape => match shape_bounds(shape, &placement.world_from_object) {
+                Some(bounds) => bounds,
+                None => {
+                    planes.push(instance);
+                    continue;
+                }
+            },
+        };
+        if !(bounds.min.abs().max(bounds.max.abs()).max_element() <= MAX_COORDINATE) {
+            return Err(Error::Scene(format!(
+                "node '{name}' reaches from {} to {}; coordinates must lie within ±1e12",
+                bounds.min, bounds.max
+            )));
+        }
+        bounded.push(instance);
+        boxes.push(bounds.padded());
+    }
+    Ok(ordered(planes, bounded, &boxes, meshes, instanced_triangles))
+}
+
+/// Planes first, then the others in the order of the leaves; the roots of meshes where `flatten` will put them.
+fn ordered(
+    planes: Vec<Instance>,
+    bounded: Vec<Instance>,
+    boxes: &[Aabb],
+    meshes: &Meshes,
+    instanced_triangles: u64,
+) -> BuiltInstances {
+    let plane_count = planes.len() as u32;
+    let hierarchy = bvh::build(boxes);
+    let mut nodes = Vec::new();
+    bvh::append(&mut nodes, &hierarchy.nodes, plane_count);
+    let mut end = nodes.len() as u32;
+    let mut roots = Vec::with_capacity(meshes.built.len());
+    for mesh in &meshes.built {
+        roots.push(end);
+        end += mesh.hierarchy.nodes.len() as u32;
+    }
+    let mut instances = planes;
+    instances.extend(hierarchy.order.iter().map(|&i| {
+        let mut instance = bounded[i as usize];
+        if instance.shape == SHAPE_MESH {
+            instance.root = roots[instance.root as usize];
+        }
+        instance
+    }));
+    let mesh_depth = meshes.built.iter().map(|mesh| mesh.hierarchy.depth).max().unwrap_or(0);
+    BuiltInstances { instances, plane_count, nodes, instanced_triangles, depth: hierarchy.depth + mesh_depth }
+}
+
+fn pack(placement: &Placement, name: &str) -> Result<Instance> {
+    let (shape, parameters) = match placement.geometry.shape {
+        Shape::Sphere => (SHAPE_SPHERE, Vec4::ZERO),
+        Shape::Cube => (SHAPE_CUBE, Vec4::ZERO),
+        Shape::Cylinder => (SHAPE_CYLINDER, Vec4::ZERO),
+        Shape::Cone => (SHAPE_CONE, Vec4::ZERO),
+        Shape::Torus { major, minor } => (SHAPE_TORUS, Vec4::new(major as f32, minor as f32, 0.0, 0.0)),
+        Shape::Plane => (SHAPE_PLANE, Vec4::ZERO),
+        Shape::Mesh(_) => (SHAPE_MESH, Vec4::ZERO),
+    };
+    if shape == SHAPE_TORUS && !(parameters.is_finite() && parameters.x > 0.0 && parameters.y > 0.0) {
+        return Err(Error::Scene(format!("node '{name}': the radii of a torus must be above 0")));
+    }
+    let instance = Instance {
+        object_from_world: rows(&placement.world_from_object.inverse()),
+        shape,
+        material: 0,
+        root: NONE,
+        flags: 0,
+        world_from_object: rows(&placement.world_from_object),
+        parameters,
+    };
+    if !instance.object_from_world.iter().chain(&instance.world_from_object).all(|row| row.is_finite()) {
+        return Err(Error::Scene(format!("node '{name}': its transform leaves the range of single precision")));
+    }
+    Ok(instance)
+}
+
+fn rows(map: &DAffine3) -> AffineRows {
+    let axes = map.matrix3.transpose();
+    let row = |axis: DVec3, translation: f64| axis.as_vec3().extend(translation as f32);
+    [row(axes.x_axis, map.translation.x), row(axes.y_axis, map.translation.y), row(axes.z_axis, map.translation.z)]
+}

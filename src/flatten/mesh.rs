@@ -1,0 +1,167 @@
+//! Meshes: triangles in the kernel's layout, each mesh with its own hierarchy.
+
+use super::bounds::Bounds;
+use super::bvh::{self, Hierarchy};
+use super::walk::Placement;
+use crate::layout::{TRIANGLE_SMOOTH, Triangle};
+use crate::scene::{Mesh, Shape};
+use crate::{Error, Result};
+use glam::{DVec3, Vec2, Vec3, Vec3A, Vec4};
+use obvhs::aabb::Aabb;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A mesh ready for the buffers.
+pub struct BuiltMesh {
+    /// In the order of the hierarchy's leaves.
+    pub triangles: Vec<Triangle>,
+    pub hierarchy: Hierarchy,
+    /// In object space.
+    pub bounds: Bounds,
+    /// Least texture coordinates and their extent.
+    pub uv_rectangle: Vec4,
+    /// Triangles without an area, left out.
+    pub degenerate: usize,
+}
+
+/// The different meshes of a scene, in the order of their first use.
+pub struct Meshes {
+    pub built: Vec<BuiltMesh>,
+    indices: HashMap<*const Mesh, usize>,
+}
+
+impl Meshes {
+    /// Where the mesh is in `built`. A mesh is the same mesh only if it is the same allocation.
+    pub fn index_of(&self, mesh: &Arc<Mesh>) -> Option<usize> {
+        self.indices.get(&Arc::as_ptr(mesh)).copied()
+    }
+}
+
+/// Builds each mesh of the placements once, in parallel.
+pub fn build_all(placements: &[Placement]) -> Result<Meshes> {
+    let mut indices = HashMap::new();
+    let mut meshes = Vec::new();
+    for placement in placements {
+        if let Shape::Mesh(mesh) = &placement.geometry.shape {
+            indices.entry(Arc::as_ptr(mesh)).or_insert_with(|| {
+                meshes.push(mesh);
+                meshes.len() - 1
+            });
+        }
+    }
+    let built = meshes.par_iter().map(|mesh| build(mesh)).collect::<Result<Vec<_>>>()?;
+    let total: usize = built.iter().map(|mesh| mesh.triangles.len()).sum();
+    if u32::try_from(total).is_err() {
+        return Err(Error::Scene(format!("the scene has {total} triangles; at most {} are possible", u32::MAX)));
+    }
+    Ok(Meshes { built, indices })
+}
+
+/// Coordinates beyond this have areas that single precision cannot add up.
+const MAX_COORDINATE: f32 = 1e12;
+
+/// Triangles whose edges are shorter than this, or whose corners lie on a line to within this share of their edges,
+/// have no normal that single precision can find.
+const MIN_EDGE: f32 = 1e-18;
+
+fn build(mesh: &Mesh) -> Result<BuiltMesh> {
+    check(mesh)?;
+    let uvs = || mesh.triangles.iter().flatten().map(|&corner| uv(mesh, corner));
+    let uv_min = uvs().fold(Vec2::INFINITY, Vec2::min);
+    let uv_max = uvs().fold(Vec2::NEG_INFINITY, Vec2::max);
+    let (uv_min, uv_extent) = if mesh.uvs.is_empty() || mesh.triangles.is_empty() {
+        (Vec2::ZERO, Vec2::ZERO)
+    } else {
+        (uv_min, uv_max - uv_min)
+    };
+
+    let triangles: Vec<Triangle> =
+        mesh.triangles.iter().filter_map(|corners| pack(mesh, *corners, uv_min, uv_extent)).collect();
+    let boxes: Vec<Aabb> = triangles
+        .iter()
+        .map(|triangle| {
+            let (p0, p1, p2) = (Vec3A::from(triangle.p0), Vec3A::from(triangle.p1), Vec3A::from(triangle.p2));
+            Aabb::new(p0.min(p1).min(p2), p0.max(p1).max(p2))
+        })
+        .collect();
+    let bounds = triangles
+        .iter()
+        .flat_map(|triangle| [triangle.p0, triangle.p1, triangle.p2])
+        .fold(Bounds::EMPTY, |bounds, point| bounds.extended(point.as_dvec3()));
+    let hierarchy = bvh::build(&boxes);
+    Ok(BuiltMesh {
+        triangles: hierarchy.order.iter().map(|&i| triangles[i as usize]).collect(),
+        degenerate: mesh.triangles.len() - triangles.len(),
+        bounds,
+        uv_rectangle: Vec4::new(uv_min.x, uv_min.y, uv_extent.x, uv_extent.y),
+        hierarchy,
+    })
+}
+
+fn check(mesh: &Mesh) -> Result<()> {
+    let refuse = |message: String| Err(Error::Scene(format!("mesh '{}': {message}", mesh.name)));
+    let count = mesh.positions.len();
+    for (what, length) in [("normals", mesh.normals.len()), ("texture coordinates", mesh.uvs.len())] {
+        if length != 0 && length != count {
+            return refuse(format!("{length} {what} for {count} vertices"));
+        }
+    }
+    if let Some(corner) = mesh.triangles.iter().flatten().find(|&&corner| corner as usize >= count) {
+        return refuse(format!("a triangle refers to vertex {corner}, but there are only {count}"));
+    }
+    for &corner in mesh.triangles.iter().flatten() {
+        let position = mesh.positions[corner as usize];
+        if !position.abs().cmple(Vec3::splat(MAX_COORDINATE)).all() {
+            return refuse(format!("vertex {corner} is at {position}; coordinates must lie within ±1e12"));
+        }
+        if !uv(mesh, corner).is_finite() {
+            return refuse(format!("vertex {corner} has a texture coordinate that is not finite"));
+        }
+    }
+    Ok(())
+}
+
+fn uv(mesh: &Mesh, corner: u32) -> Vec2 {
+    mesh.uvs.get(corner as usize).copied().unwrap_or(Vec2::ZERO)
+}
+
+/// `None` where the corners lie on a line.
+fn pack(mesh: &Mesh, corners: [u32; 3], uv_min: Vec2, uv_extent: Vec2) -> Option<Triangle> {
+    let [p0, p1, p2] = corners.map(|corner| mesh.positions[corner as usize]);
+    // In single precision, since that is how the renderers compute it.
+    let (edge1, edge2) = (p1 - p0, p2 - p0);
+    let size = edge1.abs().max(edge2.abs()).max_element();
+    let normal = (edge1 / size).cross(edge2 / size);
+    if !(size > MIN_EDGE && normal.abs().max_element() > MIN_EDGE) {
+        return None;
+    }
+    let face_normal = normal.as_dvec3().normalize();
+
+    // A vertex without a normal of its own takes that of the face.
+    let given = corners.map(|corner| mesh.normals.get(corner as usize)?.as_dvec3().try_normalize());
+    let smooth = given.iter().any(Option::is_some);
+    let [n0, n1, n2] = given.map(|normal| encode_octahedral(normal.unwrap_or(face_normal).as_vec3()));
+    let [uv0, uv1, uv2] = corners.map(|corner| encode_uv(uv(mesh, corner), uv_min, uv_extent));
+    Some(Triangle { p0, n0, p1, n1, p2, n2, uv0, uv1, uv2, flags: if smooth { TRIANGLE_SMOOTH } else { 0 } })
+}
+
+/// A unit vector as a point of the unfolded octahedron, two 16-bit snorms, x in the low half (Cigolle et al.,
+/// "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 2014). Off by less than 7e-5.
+pub fn encode_octahedral(normal: Vec3) -> u32 {
+    let n = normal.as_dvec3();
+    let n = n / (n.x.abs() + n.y.abs() + n.z.abs());
+    let sign = |v: f64| if v < 0.0 { -1.0 } else { 1.0 };
+    let DVec3 { x, y, z } = n;
+    let (x, y) = if z < 0.0 { ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y)) } else { (x, y) };
+    let snorm = |v: f64| u32::from((v * 32767.0).round() as i16 as u16);
+    snorm(x) | (snorm(y) << 16)
+}
+
+/// Two 16-bit unorms within the rectangle of the mesh's texture coordinates, u in the low half.
+fn encode_uv(uv: Vec2, min: Vec2, extent: Vec2) -> u32 {
+    let unorm = |v: f32, min: f32, extent: f32| {
+        if extent > 0.0 { ((f64::from(v) - f64::from(min)) / f64::from(extent) * 65535.0).round() as u16 } else { 0 }
+    };
+    u32::from(unorm(uv.x, min.x, extent.x)) | (u32::from(unorm(uv.y, min.y, extent.y)) << 16)
+}

@@ -1,0 +1,105 @@
+//! The GPU's side of the sample loop.
+
+use super::device::Device;
+use super::dispatch::{BLOCK_EDGE, Session};
+use super::pipeline::Pipeline;
+use crate::film::Film;
+use crate::flatten::SceneBuffers;
+use crate::layout::{Dispatch, FilmPixel, Frame};
+use crate::renderer::{Renderer, Tally};
+use crate::shader::{Program, RENDER_ENTRY_POINT};
+use crate::{Error, Result};
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// How to run the kernel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GpuOptions {
+    /// Keep naga's bounds checks of array indices and loops in the kernel: slower on GPUs, and a fault in a shader
+    /// or a scene's buffers then reads a wrong element rather than someone else's memory.
+    pub checked: bool,
+}
+
+/// Renders on a GPU or a software Vulkan device.
+pub struct GpuRenderer {
+    device: Device,
+    options: GpuOptions,
+    program: Program,
+    entry_point: String,
+    session: Option<Session>,
+    warmup_seconds: f64,
+}
+
+impl GpuRenderer {
+    /// A renderer with the kernel of `shaders/kernels/render.wgsl`.
+    ///
+    /// # Errors
+    /// [`Error::Shader`] where the shaders are not valid.
+    pub fn new(device: Device, options: GpuOptions) -> Result<Self> {
+        Ok(GpuRenderer::with_program(device, options, Program::renderer()?, RENDER_ENTRY_POINT))
+    }
+
+    /// A renderer with another kernel, which has to use the bindings of `shaders/bindings.wgsl` and workgroups of 64
+    /// in one dimension, and to do nothing where `workgroup_id.x >= dispatch.block_count`.
+    pub fn with_program(device: Device, options: GpuOptions, program: Program, entry_point: &str) -> Self {
+        let entry_point = entry_point.to_owned();
+        GpuRenderer { device, options, program, entry_point, session: None, warmup_seconds: 0.0 }
+    }
+
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// Seconds that the last `prepare` spent on compiling the kernel and its first dispatch.
+    pub fn warmup_seconds(&self) -> f64 {
+        self.warmup_seconds
+    }
+
+    fn session(&mut self) -> Result<&mut Session> {
+        self.session.as_mut().ok_or_else(|| Error::Kernel("the renderer was used before a scene was prepared".into()))
+    }
+}
+
+impl Renderer for GpuRenderer {
+    /// # Errors
+    /// [`Error::Limit`] for a scene that the device cannot hold, [`Error::Shader`], and [`Error::Device`] where the
+    /// device runs out of memory or is lost, as from every other call.
+    fn prepare(&mut self, scene: Arc<SceneBuffers>) -> Result<()> {
+        // Frees the memory of the scene before.
+        self.session = None;
+        let start = Instant::now();
+        let source = self.program.source();
+        let overrides = scene.features.overrides();
+        let pipeline = Pipeline::new(&self.device, source, &self.entry_point, &overrides, self.options.checked)?;
+        let compiled = start.elapsed();
+        let mut session = Session::new(&self.device, pipeline, &scene)?;
+        let start = Instant::now();
+        session.warm_up(&scene.frame)?;
+        self.warmup_seconds = (compiled + start.elapsed()).as_secs_f64();
+        self.session = Some(session);
+        Ok(())
+    }
+
+    fn max_band_pixels(&self) -> u64 {
+        let limits = self.device.limits();
+        let bytes = limits.storage_binding.min(limits.buffer);
+        // One dispatch can take the whole band. Rows of blocks are counted, as the last block of a row may hang over.
+        let width = self.session.as_ref().map_or(BLOCK_EDGE, |session| session.image_size().x).max(1);
+        let block_rows = u64::from(limits.workgroups / width.div_ceil(BLOCK_EDGE));
+        let in_one_dispatch = block_rows * u64::from(BLOCK_EDGE) * u64::from(width);
+        (bytes / size_of::<FilmPixel>() as u64).min(in_one_dispatch)
+    }
+
+    fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {
+        self.session()?.begin_band(rows)
+    }
+
+    fn submit(&mut self, frame: &Frame, dispatches: &[Dispatch]) -> Result<Tally> {
+        self.session()?.submit(frame, dispatches)
+    }
+
+    fn end_band(&mut self, film: &mut Film) -> Result<()> {
+        self.session()?.end_band(film)
+    }
+}

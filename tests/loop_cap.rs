@@ -1,0 +1,114 @@
+//! Mesa before 23 lets one invocation turn 65,535 times through all its loops, then leaves every loop without a word.
+//! No picture may come out wrong for it: work is divided until it fits, or rendering stops with an error.
+
+use crate::support::{Stage, paint, render_with};
+use glam::{DAffine3, DVec3, Vec3};
+use gpu_trace::device::{DeviceChoice, open_renderer};
+use gpu_trace::flatten::{WorkPlan, flatten};
+use gpu_trace::layout::STATUS_LOOP_BOUND;
+use gpu_trace::render::{RenderOptions, Unattended, render};
+use gpu_trace::scene::{LightExtent, Shape};
+use std::sync::Arc;
+
+/// Many lights over a wood of thin tori seen along their rows: long walks through the hierarchy for every shadow ray.
+fn heavy_stage(lights: u32, shadow: u32) -> Stage {
+    let mut stage = Stage::new(16, 8);
+    stage.scene.ambient = Vec3::splat(0.1);
+    stage.scene.sampling.shadow = shadow;
+    stage.add(Shape::Plane, DAffine3::from_translation(DVec3::new(0.0, -1.0, 0.0)), paint(0.7, 0.7, 0.7));
+    for i in 0..400 {
+        let place =
+            DVec3::new(f64::from(i % 20) * 0.5 - 5.0, f64::from(i % 7) * 0.15 - 0.8, -2.0 - f64::from(i / 20) * 0.5);
+        let turned = DAffine3::from_translation(place) * DAffine3::from_rotation_x(f64::from(i));
+        stage.add(Shape::Torus { major: 0.5, minor: 0.02 }, turned, paint(0.9, 0.5, 0.2));
+    }
+    for i in 0..lights {
+        let angle = f64::from(i) * 0.7;
+        let position = DVec3::new(angle.cos() * 9.0, 0.5 + f64::from(i % 5) * 0.3, angle.sin() * 9.0 - 6.0);
+        stage.add_light(position, Vec3::splat(1.0 / lights as f32), LightExtent::Classic);
+    }
+    stage
+}
+
+/// With every shadow ray in one pass an invocation passes the cap of old drivers: the renderer has to notice.
+#[test]
+fn work_beyond_the_cap_renders_right() {
+    let scene = heavy_stage(40, 16).finish();
+    let buffers = Arc::new(flatten(&scene).unwrap_or_else(|error| panic!("{error}")));
+    // One pass for all 640 shadow rays, ten times the ordinary budget.
+    let plan =
+        WorkPlan { pass_count: 1, shadow_count: 16, light_samples: 640, deep_light_samples: 8, glossy_samples: 1 };
+    let picture = |choice: DeviceChoice| {
+        let (mut renderer, info) = open_renderer(&choice, false).unwrap_or_else(|error| panic!("{error}"));
+        let options = RenderOptions { plan: Some(plan), ..RenderOptions::whole(&buffers) };
+        let rendered = render(buffers.clone(), renderer.as_mut(), &options, &mut Unattended)
+            .unwrap_or_else(|error| panic!("{error}"));
+        println!("{}: {} passes, {} rays", info.name, rendered.passes, rendered.tally.total_rays());
+        rendered
+    };
+    let (gpu, cpu) = (picture(DeviceChoice::Gpu), picture(DeviceChoice::Cpu));
+    let worst = gpu
+        .film
+        .pixels
+        .iter()
+        .zip(&cpu.film.pixels)
+        .flat_map(|(a, b)| (0..4).map(|channel| a[channel].abs_diff(b[channel])))
+        .max();
+    // A lost shadow ray of 640 would show as 1/640 of a light's share, some 1600 units.
+    assert!(worst < Some(400), "GPU and CPU differ by {worst:?} film units");
+    if std::env::var("GPU_TRACE_EXPECT_DRIVER").is_ok_and(|driver| driver.starts_with("22.")) {
+        assert!(gpu.passes > 1, "the old driver's cap was not noticed, or the scene does not reach it");
+    }
+}
+
+/// The probe that every invocation ends with is what notices: a kernel whose loops are cut short must say so.
+#[test]
+fn the_driver_is_known_by_its_loop_cap() {
+    for (device, cap) in gpu_trace::gpu::probe::loop_caps().unwrap_or_else(|error| panic!("{error}")) {
+        println!("{device}: {cap:?}");
+        let capped = cap.turns().is_some();
+        assert_eq!(cap.single.made, if capped { 65_535 } else { 100_000 });
+        let old = std::env::var("GPU_TRACE_EXPECT_DRIVER").is_ok_and(|driver| driver.starts_with("22."));
+        assert!(!old || capped, "the old driver is expected to cap loops");
+    }
+}
+
+/// A renderer that reports the bound whatever is asked of it ends in an error, not in a picture.
+#[test]
+fn a_bound_that_never_goes_away_is_an_error() {
+    use gpu_trace::film::Film;
+    use gpu_trace::flatten::SceneBuffers;
+    use gpu_trace::layout::{Dispatch, Frame};
+    use gpu_trace::renderer::{Renderer, Tally};
+
+    struct AlwaysBounded;
+    impl Renderer for AlwaysBounded {
+        fn prepare(&mut self, _: Arc<SceneBuffers>) -> gpu_trace::Result<()> {
+            Ok(())
+        }
+        fn max_band_pixels(&self) -> u64 {
+            u64::MAX
+        }
+        fn begin_band(&mut self, _: std::ops::Range<u32>) -> gpu_trace::Result<()> {
+            Ok(())
+        }
+        fn submit(&mut self, _: &Frame, _: &[Dispatch]) -> gpu_trace::Result<Tally> {
+            Ok(Tally { flags: STATUS_LOOP_BOUND, ..Tally::default() })
+        }
+        fn end_band(&mut self, _: &mut Film) -> gpu_trace::Result<()> {
+            panic!("a band that met a bound must not reach the film");
+        }
+    }
+    let buffers = Arc::new(flatten(&heavy_stage(3, 7).finish()).unwrap_or_else(|error| panic!("{error}")));
+    let options = RenderOptions::whole(&buffers);
+    let error = render(buffers, &mut AlwaysBounded, &options, &mut Unattended).expect_err("there is no picture");
+    assert!(error.to_string().contains("loop turns"), "{error}");
+}
+
+/// The ordinary budget, on the same scene: the passes are planned so that nothing has to be repeated.
+#[test]
+fn work_within_the_budget_is_not_repeated() {
+    let scene = heavy_stage(4, 16).finish();
+    let rendered = render_with(&scene, &DeviceChoice::Gpu, |_| ());
+    assert_eq!(rendered.passes, 1);
+}

@@ -1,0 +1,153 @@
+//! The GPU renderer against the CPU renderer, scene by scene: the same samples must give the same picture.
+
+use crate::support::{Stage, paint, render_whole, render_with};
+use glam::{DAffine3, DVec3, Vec3};
+use gpu_trace::device::DeviceChoice;
+use gpu_trace::film::{Comparison, Film, Mask, compare_images};
+use gpu_trace::scene::{LightExtent, Material, Scene, Shape};
+use gpu_trace::script::{ScriptOptions, load_scene};
+use std::path::{Path, PathBuf};
+
+/// Pictures of the scenes are rendered this wide here, with this many camera samples.
+const WIDTH: u32 = 200;
+const CAMERA_SAMPLES: u32 = 4;
+
+fn scene_files() -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = std::fs::read_dir("scenes")
+        .expect("the tests run in the project's folder")
+        .map(|entry| entry.expect("a readable folder").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "lua"))
+        .collect();
+    files.sort();
+    assert!(files.len() >= 7, "only {} scenes found", files.len());
+    files
+}
+
+/// The scenes of a file at test size, with all their shadow and glossy rays.
+fn reduced_scenes(file: &Path) -> Vec<Scene> {
+    let mut scenes =
+        load_scene(file, &ScriptOptions::default()).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    assert!(!scenes.is_empty(), "{} renders nothing", file.display());
+    for scene in &mut scenes {
+        let [width, height] = scene.size;
+        if width > WIDTH {
+            scene.size = [WIDTH, (height * WIDTH / width).max(1)];
+        }
+        scene.sampling.camera = scene.sampling.camera.min(CAMERA_SAMPLES);
+    }
+    scenes
+}
+
+fn compare(a: &Film, b: &Film, scene: &Scene) -> Comparison {
+    let resolve = |film: &Film| film.resolve(scene.transfer, false);
+    compare_images(&resolve(a), &resolve(b), Mask::None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The bounds of issue and design: FLIP at most 0.002, at most 0.1 % of the pixels off by more than 2/255.
+fn agrees(comparison: &Comparison) -> bool {
+    comparison.flip_mean <= 0.002 && comparison.differing_share <= 0.001
+}
+
+#[test]
+fn every_scene_looks_the_same_on_both_devices() {
+    for file in scene_files() {
+        for scene in reduced_scenes(&file) {
+            let gpu = render_whole(&scene, &DeviceChoice::Gpu);
+            let cpu = render_whole(&scene, &DeviceChoice::Cpu);
+            let comparison = compare(&gpu.film, &cpu.film, &scene);
+            println!("{}: {comparison}; {} rays", file.display(), gpu.tally.total_rays());
+            assert!(agrees(&comparison), "{}: {comparison}", file.display());
+            // The trees of rays are the same but for a few choices that fall the other way by a rounding.
+            for (gpu, cpu) in gpu.tally.rays.into_iter().zip(cpu.tally.rays) {
+                assert!(gpu.abs_diff(cpu) <= cpu / 1000 + 10, "{}: {gpu} rays and {cpu}", file.display());
+            }
+        }
+    }
+}
+
+/// A scene with everything that splits and chooses: glossy and refractive shapes under two area lights, a lens.
+fn mixed_stage() -> Stage {
+    let mut stage = Stage::new(72, 50);
+    stage.scene.camera.lens_edge = 0.05;
+    stage.scene.camera.focus_distance = 4.0;
+    stage.scene.ambient = Vec3::splat(0.2);
+    stage.scene.background.top = Vec3::new(0.2, 0.4, 0.8);
+    stage.scene.sampling.camera = 4;
+    stage.scene.sampling.shadow = 5;
+    stage.scene.sampling.glossy = 6;
+    let glass = Material { ior: Some(1.5), reflection: 1.0, diffuse: Vec3::ZERO, ..Material::default() };
+    let brushed = Material { reflection: 0.7, glossy: 0.3, ..paint(0.3, 0.2, 0.1) };
+    let place = |x: f64, y: f64, z: f64| DAffine3::from_translation(DVec3::new(x, y, z));
+    stage.add(Shape::Plane, place(0.0, -1.0, 0.0), Material { specular: Vec3::splat(0.4), ..paint(0.6, 0.6, 0.5) });
+    stage.add(Shape::Sphere, place(-1.2, 0.0, -4.0), glass);
+    stage.add(Shape::Torus { major: 0.8, minor: 0.3 }, place(1.2, -0.6, -4.0), brushed);
+    stage.add(Shape::Cone, place(0.0, 0.6, -6.0) * DAffine3::from_scale(DVec3::new(1.0, 1.6, 0.7)), brushed);
+    stage.add(Shape::Cylinder, place(2.4, 0.0, -6.0) * DAffine3::from_scale(DVec3::new(-0.5, 1.0, 0.5)), glass);
+    stage.add_light(DVec3::new(-3.0, 5.0, 0.0), Vec3::splat(0.6), LightExtent::Classic);
+    stage.add_light(DVec3::new(4.0, 4.0, -2.0), Vec3::splat(0.4), LightExtent::Sphere { radius: 0.7 });
+    stage
+}
+
+#[test]
+fn a_flipped_normal_is_rejected() {
+    let scene = mixed_stage().finish();
+    let mut wrong = mixed_stage();
+    // A mirrored light is what a flipped normal looks like from the picture's side.
+    wrong.scene.lights[0].position.x *= -1.0;
+    let right = render_whole(&scene, &DeviceChoice::Gpu);
+    let wrong = render_whole(&wrong.finish(), &DeviceChoice::Cpu);
+    assert!(!agrees(&compare(&right.film, &wrong.film, &scene)));
+}
+
+#[test]
+fn a_shifted_seed_is_rejected() {
+    let scene = mixed_stage().finish();
+    let mut shifted = scene.clone();
+    shifted.sampling.seed += 1;
+    let right = render_whole(&scene, &DeviceChoice::Gpu);
+    let wrong = render_whole(&shifted, &DeviceChoice::Cpu);
+    assert!(!agrees(&compare(&right.film, &wrong.film, &scene)));
+}
+
+#[test]
+fn tiles_and_batches_give_the_identical_film() {
+    let scene = mixed_stage().finish();
+    for device in [DeviceChoice::Gpu, DeviceChoice::Cpu] {
+        let whole = render_whole(&scene, &device).film;
+        assert!(whole.pixels.iter().any(|pixel| pixel[0] > 0), "the picture is black");
+        for (blocks, pixels) in [(Some(1), None), (Some(7), None), (Some(1000), None), (Some(13), Some(72 * 16))] {
+            let parts = render_with(&scene, &device, |options| {
+                options.blocks_per_dispatch = blocks;
+                options.max_band_pixels = pixels;
+            });
+            assert!(parts.film == whole, "{device:?}: {blocks:?} blocks in bands of {pixels:?} pixels differ");
+        }
+    }
+}
+
+#[test]
+fn sample_ranges_add_up_to_the_identical_film() {
+    let mut stage = mixed_stage();
+    stage.scene.sampling.camera = 64;
+    stage.scene.size = [40, 24];
+    let scene = stage.finish();
+    for device in [DeviceChoice::Gpu, DeviceChoice::Cpu] {
+        let range =
+            |samples: std::ops::Range<u32>| render_with(&scene, &device, |options| options.samples = samples).film;
+        let whole = range(0..64);
+        let (mut first, second) = (range(0..32), range(32..64));
+        assert!(first.pixels != second.pixels, "the halves are the same samples");
+        first.merge(&second).unwrap_or_else(|error| panic!("{error}"));
+        assert!(first == whole, "{device:?}: 0..32 and 32..64 do not add up to 0..64");
+    }
+}
+
+/// `tests/run --old-driver` says which driver it has put in place; this fails if another one answers.
+#[test]
+fn the_expected_driver_answers() {
+    let (_, device) =
+        gpu_trace::device::open_renderer(&DeviceChoice::Gpu, false).unwrap_or_else(|error| panic!("{error}"));
+    println!("{device:?}");
+    let expected = std::env::var("GPU_TRACE_EXPECT_DRIVER").unwrap_or_default();
+    assert!(device.driver.contains(&expected), "{} answers instead of {expected}", device.driver);
+}
