@@ -24,9 +24,9 @@ fn camera_ray(pixel: vec2<u32>, sample_index: u32) -> CameraRay {
     let y = -ndc.y * frame.tan_half_fov;
     let through = frame.forward + x * frame.right + y * frame.up;
     if (!HAS_LENS) {
-        return CameraRay(frame.eye, normalize(through), key);
+        return CameraRay(frame.eye, unit_vector(through), key);
     }
     let xi = sobol_2d(sample_index, hash_combine(key, DIMENSION_LENS));
     let lens = frame.lens_edge * ((xi.x - 0.5) * frame.right + (xi.y - 0.5) * frame.up);
-    return CameraRay(frame.eye + lens, normalize(frame.focus_distance * through - lens), key);
+    return CameraRay(frame.eye + lens, unit_vector(frame.focus_distance * through - lens), key);
 }

@@ -85,7 +85,7 @@ fn scatter(surface: Surface, material: Material, ray: Ray) -> Scattering {
             let both = material.reflection > 0.0;
             scattering.reflected = select(0.0, fresnel * material.reflection, both);
             scattering.refracted = select(1.0, 1.0 - fresnel, both);
-            scattering.direction = normalize(keep_above(refraction.direction, -surface.geometric_normal));
+            scattering.direction = unit_vector(keep_above(refraction.direction, -surface.geometric_normal));
             scattering.media = media;
         }
     }
@@ -99,7 +99,7 @@ fn reflected_direction(surface: Surface, material: Material, ray: Ray, index: u3
     if (HAS_GLOSSY && material.glossy > 0.0) {
         r = sample_glossy(r, material.glossy, sobol_2d(index, hash_combine(ray.key, DIMENSION_GLOSSY)));
     }
-    return normalize(keep_above(r, surface.geometric_normal));
+    return unit_vector(keep_above(r, surface.geometric_normal));
 }
 
 // Pushes the rays that leave a surface.

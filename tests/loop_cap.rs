@@ -17,7 +17,8 @@ fn heavy_stage(lights: u32, shadow: u32) -> Stage {
     stage.scene.sampling.shadow = shadow;
     stage.add(Shape::Plane, DAffine3::from_translation(DVec3::new(0.0, -1.0, 0.0)), paint(0.7, 0.7, 0.7));
     for i in 0..400 {
-        let place = DVec3::new(f64::from(i % 20) * 0.5 - 5.0, f64::from(i % 7) * 0.15 - 0.8, -2.0 - f64::from(i / 20) * 0.5);
+        let place =
+            DVec3::new(f64::from(i % 20) * 0.5 - 5.0, f64::from(i % 7) * 0.15 - 0.8, -2.0 - f64::from(i / 20) * 0.5);
         let turned = DAffine3::from_translation(place) * DAffine3::from_rotation_x(f64::from(i));
         stage.add(Shape::Torus { major: 0.5, minor: 0.02 }, turned, paint(0.9, 0.5, 0.2));
     }
@@ -40,8 +41,8 @@ fn work_beyond_the_cap_renders_right() {
     let picture = |choice: DeviceChoice| {
         let (mut renderer, info) = open_renderer(&choice, false).unwrap_or_else(|error| panic!("{error}"));
         let options = RenderOptions { plan: Some(plan), ..RenderOptions::whole(&buffers) };
-        let rendered =
-            render(buffers.clone(), renderer.as_mut(), &options, &mut Unattended).unwrap_or_else(|error| panic!("{error}"));
+        let rendered = render(buffers.clone(), renderer.as_mut(), &options, &mut Unattended)
+            .unwrap_or_else(|error| panic!("{error}"));
         println!("{}: {} passes, {} rays", info.name, rendered.passes, rendered.tally.total_rays());
         rendered
     };

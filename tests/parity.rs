@@ -3,7 +3,7 @@
 use crate::support::{Stage, paint, render_whole, render_with};
 use glam::{DAffine3, DVec3, Vec3};
 use gpu_trace::device::DeviceChoice;
-use gpu_trace::film::{Comparison, Film, Mask, compare_images};
+use gpu_trace::film::{Comparison, Film, compare_images};
 use gpu_trace::scene::{LightExtent, Material, Scene, Shape};
 use gpu_trace::script::{ScriptOptions, load_scene};
 use std::path::{Path, PathBuf};
@@ -40,7 +40,7 @@ fn reduced_scenes(file: &Path) -> Vec<Scene> {
 
 fn compare(a: &Film, b: &Film, scene: &Scene) -> Comparison {
     let resolve = |film: &Film| film.resolve(scene.transfer, false);
-    compare_images(&resolve(a), &resolve(b), Mask::None).unwrap_or_else(|error| panic!("{error}"))
+    compare_images(&resolve(a), &resolve(b)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The bounds of issue and design: FLIP at most 0.002, at most 0.1 % of the pixels off by more than 2/255.
@@ -132,9 +132,8 @@ fn sample_ranges_add_up_to_the_identical_film() {
     stage.scene.size = [40, 24];
     let scene = stage.finish();
     for device in [DeviceChoice::Gpu, DeviceChoice::Cpu] {
-        let range = |samples: std::ops::Range<u32>| {
-            render_with(&scene, &device, |options| options.samples = samples).film
-        };
+        let range =
+            |samples: std::ops::Range<u32>| render_with(&scene, &device, |options| options.samples = samples).film;
         let whole = range(0..64);
         let (mut first, second) = (range(0..32), range(32..64));
         assert!(first.pixels != second.pixels, "the halves are the same samples");
@@ -146,7 +145,8 @@ fn sample_ranges_add_up_to_the_identical_film() {
 /// `tests/run --old-driver` says which driver it has put in place; this fails if another one answers.
 #[test]
 fn the_expected_driver_answers() {
-    let (_, device) = gpu_trace::device::open_renderer(&DeviceChoice::Gpu, false).unwrap_or_else(|error| panic!("{error}"));
+    let (_, device) =
+        gpu_trace::device::open_renderer(&DeviceChoice::Gpu, false).unwrap_or_else(|error| panic!("{error}"));
     println!("{device:?}");
     let expected = std::env::var("GPU_TRACE_EXPECT_DRIVER").unwrap_or_default();
     assert!(device.driver.contains(&expected), "{} answers instead of {expected}", device.driver);

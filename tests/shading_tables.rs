@@ -29,8 +29,8 @@ fn unit(row: u32, salt: u32) -> f32 {
 
 /// A unit vector; every sixth is along an axis, of either sign.
 fn direction(row: u32, salt: u32) -> Vec3 {
-    if row % 6 == 0 {
-        let sign = if row % 4 == 0 { 1.0 } else { -1.0 };
+    if row.is_multiple_of(6) {
+        let sign = if row.is_multiple_of(4) { 1.0 } else { -1.0 };
         return sign * Vec3::AXES[(row / 6 % 3) as usize];
     }
     sample_cone(Vec3::Z, 2.0, Vec2::new(unit(row, salt), unit(row, salt + 1)))
@@ -51,7 +51,14 @@ fn agree<const I: usize, const O: usize>(
     let worst = worst_difference(&gpu, &cpu, how);
     println!("{} of {ROWS} rows differ, by {} ulps at most", worst.rows, worst.ulps);
     let n = worst.row;
-    assert!(worst.ulps <= limit, "{}: {:?} gives {:?} on the GPU, {:?} on the CPU", worst.ulps, inputs[n], gpu[n], cpu[n]);
+    assert!(
+        worst.ulps <= limit,
+        "{}: {:?} gives {:?} on the GPU, {:?} on the CPU",
+        worst.ulps,
+        inputs[n],
+        gpu[n],
+        cpu[n]
+    );
 }
 
 fn vec3(lane: Lane) -> Vec3 {
@@ -124,8 +131,8 @@ fn elementary_functions_are_the_same_bits() {
         0,
         |row| {
             let any = f32::MIN_POSITIVE.log2() + unit(row, 1) * 250.0;
-            let base = if row % 32 == 0 { 0.0 } else { unit(row, 2) };
-            let exponent = if row % 33 == 0 { 0.0 } else { (unit(row, 3) * 12.0).exp2() - 1.0 };
+            let base = if row.is_multiple_of(32) { 0.0 } else { unit(row, 2) };
+            let exponent = if row.is_multiple_of(33) { 0.0 } else { (unit(row, 3) * 12.0).exp2() - 1.0 };
             [floats([any.exp2(), unit(row, 4) * 300.0 - 150.0, base, exponent])]
         },
         |[lane]| {
@@ -138,7 +145,7 @@ fn elementary_functions_are_the_same_bits() {
 #[test]
 fn frames_and_glossy_directions_agree() {
     agree(
-        &["math/sampling.wgsl"],
+        &["math/elementary.wgsl", "math/sampling.wgsl"],
         "let n = vec3_at(0u); let xi = floats_at(1u).xy;
          let basis = orthonormal_basis(n);
          results[0] = float_lane(vec4<f32>(basis.tangent, 0.0));
@@ -165,12 +172,12 @@ fn cone_directions_agree() {
     let grid = |v: Vec3| [v.x, v.y, v.z].map(|x| ((x + 1.0) * 65536.0).round() as u32);
     let inputs: Vec<[Lane; 2]> = (0..ROWS)
         .map(|row| {
-            let one_minus_cos = if row % 2 == 0 { 2.0 * unit(row, 2) } else { 1e-4 * unit(row, 2) };
+            let one_minus_cos = if row.is_multiple_of(2) { 2.0 * unit(row, 2) } else { 1e-4 * unit(row, 2) };
             [vec3_lane(direction(row, 1), one_minus_cos), floats([unit(row, 3), unit(row, 4), 0.0, 0.0])]
         })
         .collect();
     let table = FunctionTable::new(
-        &["math/sampling.wgsl"],
+        &["math/elementary.wgsl", "math/sampling.wgsl"],
         "results[0] = float_lane(vec4<f32>(sample_cone(vec3_at(0u), f32_at(0u, 3u), floats_at(1u).xy), 0.0));",
     );
     let gpu: Vec<[Lane; 1]> = table.evaluate(&inputs);
@@ -182,8 +189,7 @@ fn cone_directions_agree() {
     }
 }
 
-const SHADING: &[&str] =
-    &["types.wgsl", "bindings.wgsl", "math/elementary.wgsl", "shading/material.wgsl"];
+const SHADING: &[&str] = &["types.wgsl", "bindings.wgsl", "math/elementary.wgsl", "shading/material.wgsl"];
 
 #[test]
 fn snell_and_schlick_agree() {
@@ -204,12 +210,13 @@ fn snell_and_schlick_agree() {
                 d = -d;
             }
             // Every ninth ray grazes, every tenth falls straight.
-            if row % 9 == 0 {
+            if row.is_multiple_of(9) {
                 d = (d - (d.dot(n) + 1e-4) * n).normalize();
-            } else if row % 10 == 0 {
+            } else if row.is_multiple_of(10) {
                 d = -n;
             }
-            let [n1, n2] = if row % 5 == 0 { [1.33, 1.33] } else { [1.0 + unit(row, 4) * 1.5, 1.0 + unit(row, 5)] };
+            let [n1, n2] =
+                if row.is_multiple_of(5) { [1.33, 1.33] } else { [1.0 + unit(row, 4) * 1.5, 1.0 + unit(row, 5)] };
             [vec3_lane(d, n1), vec3_lane(n, n2)]
         },
         |[d, n]| {
@@ -231,10 +238,10 @@ const PHONG_BODY: &str = "
 fn phong_row(row: u32) -> [Lane; 5] {
     let colour = |salt: u32| Vec3::new(unit(row, salt), unit(row, salt + 1), unit(row, salt + 2));
     let n = direction(row, 1);
-    let l = if row % 11 == 0 { n } else { direction(row + 5, 2) };
+    let l = if row.is_multiple_of(11) { n } else { direction(row + 5, 2) };
     // A viewer in the mirror direction, another at the grazing edge, the others anywhere.
-    let v = if row % 7 == 0 { 2.0 * n.dot(l) * n - l } else { direction(row + 9, 3) };
-    let shininess = if row % 13 == 0 { 0.0 } else { (unit(row, 4) * 10.0).exp2() };
+    let v = if row.is_multiple_of(7) { 2.0 * n.dot(l) * n - l } else { direction(row + 9, 3) };
+    let shininess = if row.is_multiple_of(13) { 0.0 } else { (unit(row, 4) * 10.0).exp2() };
     [
         vec3_lane(n, 0.0),
         vec3_lane(l, 0.0),

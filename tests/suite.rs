@@ -17,6 +17,7 @@ mod loop_cap;
 mod math_tables;
 mod parity;
 mod roots;
+mod script;
 mod shaders;
 mod shading_tables;
 mod single_rays;

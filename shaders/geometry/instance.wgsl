@@ -18,7 +18,7 @@ fn transform_vector(m: mat3x4<f32>, v: vec3<f32>) -> vec3<f32> {
 
 // Normals go by the inverse transpose: `inverse` is the map back, whose transpose is applied. Unit length.
 fn transform_normal(inverse: mat3x4<f32>, n: vec3<f32>) -> vec3<f32> {
-    return unit_vector(vec3<f32>(
+    return unit_vector_of_any_size(vec3<f32>(
         inverse[0].x * n.x + inverse[1].x * n.y + inverse[2].x * n.z,
         inverse[0].y * n.x + inverse[1].y * n.y + inverse[2].y * n.z,
         inverse[0].z * n.x + inverse[1].z * n.y + inverse[2].z * n.z,
@@ -26,7 +26,7 @@ fn transform_normal(inverse: mat3x4<f32>, n: vec3<f32>) -> vec3<f32> {
 }
 
 // Scales by the largest component first, so that the squares of tiny and huge vectors stay in range.
-fn unit_vector(v: vec3<f32>) -> vec3<f32> {
+fn unit_vector_of_any_size(v: vec3<f32>) -> vec3<f32> {
     let scaled = v / max(max(abs(v.x), abs(v.y)), abs(v.z));
     return scaled / sqrt(scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z);
 }

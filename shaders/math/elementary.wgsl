@@ -1,5 +1,10 @@
 // Elementary functions of our own, since those of drivers differ in their last bits and more (lavapipe's pow by 17 ulp).
 
+// The vector's direction. `normalize` may multiply by a reciprocal root instead, which is another number.
+fn unit_vector(v: vec3<f32>) -> vec3<f32> {
+    return v / sqrt(dot(v, v));
+}
+
 // Base-2 logarithm of a positive normal number, from log2(m) = 2/ln2 artanh((m - 1) / (m + 1)) with m in
 // [1/sqrt2, sqrt2); absolute error below 2e-7 beside the integer part.
 fn log2_poly(x: f32) -> f32 {
@@ -23,7 +28,7 @@ fn exp2_poly(x: f32) -> f32 {
     let whole = floor(clamped + 0.5);
     let t = (clamped - whole) * 0.6931472;
     var series = t * 0.00019841270 + 0.0013888889;
-    series = series * t + 0.0083333333;
+    series = series * t + 0.008333334;
     series = series * t + 0.041666668;
     series = series * t + 0.16666667;
     series = series * t + 0.5;

@@ -27,7 +27,7 @@ fn keep_above(direction: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
 // (Cook, Porter, Carpenter 1984, section 3; the square as in SCENE_API). Unit length.
 fn sample_glossy(r: vec3<f32>, edge: f32, xi: vec2<f32>) -> vec3<f32> {
     let basis = orthonormal_basis(r);
-    return normalize(r + edge * (xi.x - 0.5) * basis.tangent + edge * (xi.y - 0.5) * basis.bitangent);
+    return unit_vector(r + edge * (xi.x - 0.5) * basis.tangent + edge * (xi.y - 0.5) * basis.bitangent);
 }
 
 // A direction uniform in the cone about the unit axis whose half angle has 1 - cosine = one_minus_cos

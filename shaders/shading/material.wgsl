@@ -7,7 +7,7 @@ fn phong(material: Material, n: vec3<f32>, l: vec3<f32>, v: vec3<f32>, blinn: bo
     let n_dot_l = dot(n, l);
     var cosine: f32;
     if (blinn) {
-        cosine = dot(n, normalize(l + v));
+        cosine = dot(n, unit_vector(l + v));
     } else {
         cosine = dot(2.0 * n_dot_l * n - l, v);
     }

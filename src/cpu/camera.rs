@@ -1,5 +1,6 @@
 //! Camera rays; twin of `shaders/camera.wgsl`.
 
+use crate::cpu::math::elementary::unit_vector;
 use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::path::{DIMENSION_LENS, DIMENSION_PIXEL};
 use crate::layout::{FRAME_SAMPLE_CENTRE, FRAME_SAMPLE_CORNER, Frame};
@@ -31,9 +32,9 @@ pub fn camera_ray(frame: &Frame, pixel: UVec2, sample_index: u32) -> CameraRay {
     let y = -ndc.y * frame.tan_half_fov;
     let through = frame.forward + x * frame.right + y * frame.up;
     if frame.lens_edge == 0.0 {
-        return CameraRay { origin: frame.eye, direction: through.normalize(), key };
+        return CameraRay { origin: frame.eye, direction: unit_vector(through), key };
     }
     let xi = sobol_2d(sample_index, hash_combine(key, DIMENSION_LENS));
     let lens = frame.lens_edge * ((xi.x - 0.5) * frame.right + (xi.y - 0.5) * frame.up);
-    CameraRay { origin: frame.eye + lens, direction: (frame.focus_distance * through - lens).normalize(), key }
+    CameraRay { origin: frame.eye + lens, direction: unit_vector(frame.focus_distance * through - lens), key }
 }

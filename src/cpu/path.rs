@@ -5,6 +5,7 @@ use crate::cpu::camera::CameraRay;
 use crate::cpu::geometry::bvh::scene_intersect;
 use crate::cpu::geometry::hit::Surface;
 use crate::cpu::geometry::instance::surface_at;
+use crate::cpu::math::elementary::unit_vector;
 use crate::cpu::math::offset::offset_ray_origin;
 use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::math::sampling::{keep_above, sample_glossy};
@@ -87,7 +88,7 @@ pub fn scatter(scene: &Bindings, surface: &Surface, material: &Material, ray: &R
             let both = material.reflection > 0.0;
             scattering.reflected = if both { fresnel * material.reflection } else { 0.0 };
             scattering.refracted = if both { 1.0 - fresnel } else { 1.0 };
-            scattering.direction = keep_above(refraction.direction, -surface.geometric_normal).normalize();
+            scattering.direction = unit_vector(keep_above(refraction.direction, -surface.geometric_normal));
             scattering.media = media;
         }
     }
@@ -101,7 +102,7 @@ pub fn reflected_direction(surface: &Surface, material: &Material, ray: &Ray, in
     if material.glossy > 0.0 {
         r = sample_glossy(r, material.glossy, sobol_2d(index, hash_combine(ray.key, DIMENSION_GLOSSY)));
     }
-    keep_above(r, surface.geometric_normal).normalize()
+    unit_vector(keep_above(r, surface.geometric_normal))
 }
 
 /// Radiance of the rays that leave a surface, by recursion.

@@ -64,7 +64,8 @@ pub fn build(
                 }
             },
         };
-        if !(bounds.min.abs().max(bounds.max.abs()).max_element() <= MAX_COORDINATE) {
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        if reach.is_nan() || reach > MAX_COORDINATE {
             return Err(Error::Scene(format!(
                 "node '{name}' reaches from {} to {}; coordinates must lie within ±1e12",
                 bounds.min, bounds.max

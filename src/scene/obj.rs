@@ -191,7 +191,8 @@ fn find_bad_index(text: &str) -> Option<String> {
         }
         for corner in words {
             for (kind, part) in corner.split('/').take(3).enumerate() {
-                let index = part.parse::<i64>().unwrap_or(1);
+                // What is left out, as in i//k, is not bad.
+                let Ok(index) = part.parse::<i64>() else { continue };
                 if index == 0 || index > totals[kind] || index < -so_far[kind] {
                     let name = KINDS[kind].1;
                     return Some(format!(

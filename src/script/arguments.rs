@@ -4,7 +4,7 @@
 //! 4, in `node:scale(2, 2, 0)` argument 3, as Lua itself counts for methods.
 
 use super::diagnostics::{self, Raised};
-use super::guard::Guard;
+use super::guard::{CALL_COST, Guard};
 use super::state::State;
 use crate::scene::{Light, MaterialId, NodeId};
 use mlua::{AnyUserData, Lua, MultiValue, Table, Value};
@@ -61,6 +61,7 @@ pub(super) fn call(
     body: impl FnOnce(&Call) -> Outcome<Value>,
 ) -> mlua::Result<Value> {
     context.guard.check()?;
+    context.guard.charge_instructions(lua, CALL_COST)?;
     let call = Call { lua, context, arguments: arguments.into_iter().collect() };
     call.warn_of_surplus(name, most);
     body(&call).map_err(|failure| call.raise(name, failure))

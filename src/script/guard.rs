@@ -14,6 +14,12 @@ use std::rc::Rc;
 /// Instructions between two looks at the count.
 const HOOK_INTERVAL: u32 = 1000;
 
+/// What else takes the time of that many instructions: a call of one of our functions, and an error caught.
+pub(super) const CALL_COST: u64 = 200;
+pub(super) const ERROR_COST: u64 = 50_000;
+/// A coroutine starts its own interval, so that many short ones would otherwise run for free.
+pub(super) const COROUTINE_COST: u64 = HOOK_INTERVAL as u64;
+
 /// Memory by which the limit is raised once the script is being ended, so that the unwinding has room.
 const UNWINDING_ROOM: usize = 16 << 20;
 
@@ -52,17 +58,16 @@ impl Guard {
 
     fn count(&self, lua: &Lua, debug: &Debug) -> mlua::Result<()> {
         self.check()?;
-        self.charge_instructions(lua)?;
+        self.charge_instructions(lua, u64::from(HOOK_INTERVAL))?;
         if lua.used_memory() > self.memory_limit / 4 {
             *self.place.borrow_mut() = diagnostics::place_of(debug);
         }
         Ok(())
     }
 
-    /// Counts one interval. Called by the hook, and when a coroutine is made: its own interval starts anew, so that
-    /// many short ones would otherwise run for free.
-    pub fn charge_instructions(&self, lua: &Lua) -> mlua::Result<()> {
-        let executed = self.executed.get().saturating_add(u64::from(HOOK_INTERVAL));
+    /// Counts instructions, or what takes as long.
+    pub fn charge_instructions(&self, lua: &Lua, count: u64) -> mlua::Result<()> {
+        let executed = self.executed.get().saturating_add(count);
         self.executed.set(executed);
         if executed <= self.instruction_limit {
             return Ok(());

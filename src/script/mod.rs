@@ -1,9 +1,9 @@
 //! Runs scene scripts: the only place that knows Lua.
 //!
 //! A scene is a Lua 5.4 program that builds a graph of nodes with the `gr.*` functions and asks for pictures with
-//! `gr.render`. It runs in a sandbox ([`sandbox`]) under a memory and an instruction limit ([`guard`]); what it may
-//! read is decided by [`search`]. Each `gr.*` function is a thin mapping from its positional arguments
-//! ([`arguments`]) onto the named descriptions of [`crate::scene`].
+//! `gr.render`. It runs in a sandbox (`sandbox.rs`) under a memory and an instruction limit (`guard.rs`); what it may
+//! read is decided by `search.rs`. Each `gr.*` function is a thin mapping from its positional arguments
+//! (`arguments.rs`) onto the named descriptions of [`crate::scene`].
 
 mod api;
 mod arguments;
@@ -36,16 +36,16 @@ pub struct ScriptOptions {
     pub conventions: ConventionOverrides,
     /// Bytes that the script's values, nodes and meshes may take together.
     pub memory_limit: usize,
-    /// Lua virtual machine instructions that the script may execute. A single call of a library function counts as
-    /// one instruction, however long it takes.
+    /// Lua virtual machine instructions that the script may execute; calls of `gr` functions and caught errors count
+    /// as what they take. A single call of a Lua library function counts as one, however long it takes.
     pub instruction_limit: u64,
 }
 
 impl ScriptOptions {
     /// Room for some five million triangles given as Lua tables.
     pub const DEFAULT_MEMORY_LIMIT: usize = 2 << 30;
-    /// About five seconds of an empty loop; a million triangles computed one by one take a tenth of it.
-    pub const DEFAULT_INSTRUCTION_LIMIT: u64 = 2_000_000_000;
+    /// A few seconds of an empty loop; a million triangles computed one by one take a twentieth of it.
+    pub const DEFAULT_INSTRUCTION_LIMIT: u64 = 500_000_000;
 }
 
 impl Default for ScriptOptions {

@@ -3,6 +3,7 @@
 use super::api::{self, Function};
 use super::arguments::{Call, Context, Failure, NodeHandle, Outcome};
 use super::diagnostics;
+use super::guard::{COROUTINE_COST, ERROR_COST};
 use crate::scene::load_obj;
 use mlua::chunk::ChunkMode;
 use mlua::{Lua, Table, Value};
@@ -122,6 +123,7 @@ fn read_obj(call: &Call) -> Outcome<Value> {
 /// What a script gets to see of an error that it caught: text instead of our error objects. Raises again what must not
 /// be caught.
 fn caught(call: &Call) -> Outcome<Value> {
+    call.context.guard.charge_instructions(call.lua, ERROR_COST)?;
     let value = call.value(0);
     match value {
         value if diagnostics::is_out_of_memory(value) => Err(Failure::Lua(call.context.guard.out_of_memory(call.lua))),
@@ -134,7 +136,7 @@ fn caught(call: &Call) -> Outcome<Value> {
 }
 
 fn charge(call: &Call) -> Outcome<Value> {
-    call.context.guard.charge_instructions(call.lua)?;
+    call.context.guard.charge_instructions(call.lua, COROUTINE_COST)?;
     Ok(Value::Nil)
 }
 

@@ -49,7 +49,7 @@ fn run_in_lua(
 ) -> mlua::Result<Result<()>> {
     let libraries =
         StdLib::COROUTINE | StdLib::TABLE | StdLib::STRING | StdLib::UTF8 | StdLib::MATH | StdLib::IO | StdLib::OS;
-    let lua = Lua::new_with(libraries, LuaOptions::new().catch_rust_panics(false))?;
+    let lua = Lua::new_with(libraries, LuaOptions::default())?;
     let xpcall: Function = lua.globals().raw_get("xpcall")?;
     let gr = api::register(&lua, context)?;
     let prelude = lua.load(include_str!("prelude.lua")).set_name(PRELUDE).set_mode(ChunkMode::Text);

@@ -105,8 +105,13 @@ impl SearchPath {
         if name.is_absolute() {
             return vec![name.to_owned()];
         }
-        let join = |folder: &Path| if folder == Path::new(".") { name.to_owned() } else { folder.join(name) };
-        self.folders.iter().flat_map(|folder| [join(&folder.path), join(&folder.path.join("Assets"))]).collect()
+        self.folders
+            .iter()
+            .flat_map(|folder| {
+                let start = if folder.path == Path::new(".") { Path::new("") } else { &folder.path };
+                [start.join(name), start.join("Assets").join(name)]
+            })
+            .collect()
     }
 
     /// Whether a resolved path lies in one of the folders. The root of the file system stands for its own files only:

@@ -16,7 +16,7 @@ const TRAVERSAL_STACK: usize = crate::flatten::TRAVERSAL_STACK as usize;
 const TRAVERSAL_TURNS: u32 = 16384;
 const GROUP_PRIMITIVES: u32 = 0x00ff_ffff;
 const BOX_ERROR: f32 = 4.768_371_6e-7;
-const MIN_DIRECTION: f32 = 8.881_784_2e-16;
+const MIN_DIRECTION: f32 = 8.881_784e-16;
 
 /// The world-space hit nearest to the origin, with t in (0, t_max); t is [`MISS`] where there is none.
 pub fn scene_intersect(scene: &Bindings, origin: Vec3, direction: Vec3, t_max: f32, tally: &mut Tally) -> Hit {

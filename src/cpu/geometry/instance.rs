@@ -36,7 +36,7 @@ pub fn transform_vector(m: &AffineRows, v: Vec3) -> Vec3 {
 /// Normals go by the inverse transpose: `inverse` is the map back, whose transpose is applied. Unit length.
 #[inline]
 pub fn transform_normal(inverse: &AffineRows, n: Vec3) -> Vec3 {
-    unit_vector(Vec3::new(
+    unit_vector_of_any_size(Vec3::new(
         inverse[0].x * n.x + inverse[1].x * n.y + inverse[2].x * n.z,
         inverse[0].y * n.x + inverse[1].y * n.y + inverse[2].y * n.z,
         inverse[0].z * n.x + inverse[1].z * n.y + inverse[2].z * n.z,
@@ -45,7 +45,7 @@ pub fn transform_normal(inverse: &AffineRows, n: Vec3) -> Vec3 {
 
 /// Scales by the largest component first, so that the squares of tiny and huge vectors stay in range.
 #[inline]
-pub fn unit_vector(v: Vec3) -> Vec3 {
+pub fn unit_vector_of_any_size(v: Vec3) -> Vec3 {
     let scaled = v / v.x.abs().max(v.y.abs()).max(v.z.abs());
     scaled / (scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z).sqrt()
 }

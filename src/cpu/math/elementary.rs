@@ -1,5 +1,12 @@
 //! Elementary functions of our own, since those of drivers differ; twin of `shaders/math/elementary.wgsl`.
 
+use glam::Vec3;
+
+/// The vector's direction. `normalize` may multiply by a reciprocal root instead, which is another number.
+pub fn unit_vector(v: Vec3) -> Vec3 {
+    v / v.dot(v).sqrt()
+}
+
 /// Base-2 logarithm of a positive normal number, from log2(m) = 2/ln2 artanh((m - 1) / (m + 1)) with m in
 /// [1/√2, √2); absolute error below 2e-7 beside the integer part.
 pub fn log2_poly(x: f32) -> f32 {
@@ -23,7 +30,7 @@ pub fn exp2_poly(x: f32) -> f32 {
     let whole = (clamped + 0.5).floor();
     let t = (clamped - whole) * std::f32::consts::LN_2;
     let mut series = t * 0.000_198_412_7 + 0.001_388_888_9;
-    series = series * t + 0.008_333_333_3;
+    series = series * t + 0.008_333_334;
     series = series * t + 0.041_666_668;
     series = series * t + 0.166_666_67;
     series = series * t + 0.5;

@@ -1,5 +1,6 @@
 //! Directions and points from uniform numbers; twin of `shaders/math/sampling.wgsl`.
 
+use crate::cpu::math::elementary::unit_vector;
 use glam::{Vec2, Vec3};
 
 /// Two unit vectors that make a right-handed frame (tangent, bitangent, n) with a unit vector n.
@@ -30,7 +31,7 @@ pub fn keep_above(direction: Vec3, normal: Vec3) -> Vec3 {
 /// (Cook, Porter, Carpenter 1984, section 3). Unit length.
 pub fn sample_glossy(r: Vec3, edge: f32, xi: Vec2) -> Vec3 {
     let basis = orthonormal_basis(r);
-    (r + edge * (xi.x - 0.5) * basis.tangent + edge * (xi.y - 0.5) * basis.bitangent).normalize()
+    unit_vector(r + edge * (xi.x - 0.5) * basis.tangent + edge * (xi.y - 0.5) * basis.bitangent)
 }
 
 /// A direction uniform in the cone about the unit axis whose half angle has 1 - cosine = one_minus_cos

@@ -1,7 +1,7 @@
 //! What a surface does to light; twin of `shaders/shading/material.wgsl`.
 
 use crate::cpu::bindings::Bindings;
-use crate::cpu::math::elementary::power;
+use crate::cpu::math::elementary::{power, unit_vector};
 use crate::layout::Material;
 use glam::{UVec2, Vec3};
 
@@ -10,7 +10,7 @@ use glam::{UVec2, Vec3};
 /// n·l > 0.
 pub fn phong(material: &Material, n: Vec3, l: Vec3, v: Vec3, blinn: bool) -> Vec3 {
     let n_dot_l = n.dot(l);
-    let cosine = if blinn { n.dot((l + v).normalize()) } else { (2.0 * n_dot_l * n - l).dot(v) };
+    let cosine = if blinn { n.dot(unit_vector(l + v)) } else { (2.0 * n_dot_l * n - l).dot(v) };
     let highlight = power(cosine.max(0.0), material.shininess);
     let lit = material.diffuse * n_dot_l + material.specular * highlight;
     if n_dot_l > 0.0 { lit } else { Vec3::ZERO }
