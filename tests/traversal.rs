@@ -248,6 +248,8 @@ fn rays_in_the_faces_of_stacked_cubes_are_as_by_brute_force() {
     assert!(result.hits > rays.len() / 3 && result.ties > 100);
 }
 
+type Breakage = fn(&mut Node);
+
 /// The comparison has to notice boxes that are too small or in the wrong place, and children that are not visited.
 #[test]
 fn the_comparison_notices_a_broken_hierarchy() {
@@ -256,7 +258,6 @@ fn the_comparison_notices_a_broken_hierarchy() {
     let rays = rays_into(&sound, &mut random, 8.0, 4000);
     assert_same("sound", &sound, &rays);
 
-    type Breakage = fn(&mut Node);
     let breakages: [(&str, Breakage); 3] = [
         ("a box that is a quarter too short", |node| {
             let shorten = |bytes: u32| u32::from_le_bytes(bytes.to_le_bytes().map(|byte| byte - byte / 4));

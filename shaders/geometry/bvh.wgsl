@@ -7,7 +7,7 @@
 // Groups that await their turn; src/flatten/bvh.rs builds no hierarchy that needs more.
 const TRAVERSAL_STACK: u32 = 32u;
 // Nodes that one ray may visit, over both levels.
-const TRAVERSAL_TURNS: u32 = 16384u;
+const TRAVERSAL_TURNS: u32 = 65536u;
 const GROUP_PRIMITIVES: u32 = 0x00ffffffu;
 // 8 * 2^-24: relative error of a box's plane in quantisation, of the distance to it, and of the ray's shear.
 const BOX_ERROR: f32 = 4.7683716e-7;

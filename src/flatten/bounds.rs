@@ -47,30 +47,24 @@ pub fn shape_bounds(shape: &Shape, map: &DAffine3) -> Option<Bounds> {
     // For each world axis, the (most negative, most positive) reach from the image of the origin. An affine map's
     // row is the direction in object space along which that axis grows.
     let reach = |row: DVec3| match shape {
-        Shape::Sphere => (-row.length(), row.length()),
-        Shape::Cube => {
-            let (low, high) = (row.min(DVec3::ZERO), row.max(DVec3::ZERO));
-            (low.element_sum(), high.element_sum())
-        }
+        Shape::Sphere => Some((-row.length(), row.length())),
+        Shape::Cube => Some((row.min(DVec3::ZERO).element_sum(), row.max(DVec3::ZERO).element_sum())),
         Shape::Cylinder => {
             let reach = row.x.hypot(row.z) + row.y.abs();
-            (-reach, reach)
+            Some((-reach, reach))
         }
         // The hull of the apex and the circle at y = -1.
         Shape::Cone => {
             let circle = row.x.hypot(row.z);
-            ((-row.y - circle).min(0.0), (-row.y + circle).max(0.0))
+            Some(((-row.y - circle).min(0.0), (-row.y + circle).max(0.0)))
         }
         // A ball swept along a circle.
         Shape::Torus { major, minor } => {
             let reach = major * row.x.hypot(row.z) + minor * row.length();
-            (-reach, reach)
+            Some((-reach, reach))
         }
-        Shape::Plane | Shape::Mesh(_) => (f64::NEG_INFINITY, f64::INFINITY),
+        Shape::Plane | Shape::Mesh(_) => None,
     };
-    if matches!(shape, Shape::Plane | Shape::Mesh(_)) {
-        return None;
-    }
-    let (x, y, z) = (reach(rows.x_axis), reach(rows.y_axis), reach(rows.z_axis));
+    let (x, y, z) = (reach(rows.x_axis)?, reach(rows.y_axis)?, reach(rows.z_axis)?);
     Some(Bounds { min: map.translation + DVec3::new(x.0, y.0, z.0), max: map.translation + DVec3::new(x.1, y.1, z.1) })
 }

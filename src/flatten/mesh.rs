@@ -58,7 +58,7 @@ pub fn build_all(placements: &[Placement]) -> Result<Meshes> {
     Ok(Meshes { built, indices })
 }
 
-/// Coordinates beyond this have areas that single precision cannot add up.
+/// Positions beyond this have areas that single precision cannot add up.
 const MAX_COORDINATE: f32 = 1e12;
 
 /// Triangles whose edges are shorter than this, or whose corners lie on a line to within this share of their edges,
@@ -115,8 +115,9 @@ fn check(mesh: &Mesh) -> Result<()> {
         if !position.abs().cmple(Vec3::splat(MAX_COORDINATE)).all() {
             return refuse(format!("vertex {corner} is at {position}; coordinates must lie within ±1e12"));
         }
-        if !uv(mesh, corner).is_finite() {
-            return refuse(format!("vertex {corner} has a texture coordinate that is not finite"));
+        let uv = uv(mesh, corner);
+        if !uv.abs().cmple(Vec2::splat(MAX_COORDINATE)).all() {
+            return refuse(format!("vertex {corner} has the texture coordinate {uv}; they must lie within ±1e12"));
         }
     }
     Ok(())

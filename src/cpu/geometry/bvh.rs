@@ -13,7 +13,7 @@ use glam::{UVec2, Vec3};
 
 /// Groups that await their turn; the builder makes no hierarchy that needs more.
 const TRAVERSAL_STACK: usize = crate::flatten::TRAVERSAL_STACK as usize;
-const TRAVERSAL_TURNS: u32 = 16384;
+const TRAVERSAL_TURNS: u32 = 65_536;
 const GROUP_PRIMITIVES: u32 = 0x00ff_ffff;
 const BOX_ERROR: f32 = 4.768_371_6e-7;
 const MIN_DIRECTION: f32 = 8.881_784e-16;
