@@ -139,36 +139,63 @@ fn spawn_rays(surface: Surface, material: Material, ray: Ray) {
     }
 }
 
-// Radiance that arrives along a camera ray, and 1 or 0 for whether it met anything.
+// Radiance that arrives along a camera ray, and 1 or 0 for whether it met anything. Each turn traces one ray, a shadow
+// ray of the last surface or else the next ray of the tree: the traversal stands in the program once, and lanes with
+// shadow rays keep step with lanes that go on.
 fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
     var radiance = vec3<f32>(0.0);
     var coverage = 1.0;
     ray_stack_size = 0u;
     push_ray(Ray(camera.origin, camera.direction, 1.0, frame.medium, sample_index, camera.key, 0u));
-    let ray_bound = 1u + RAY_STACK_SIZE * frame.max_depth;
-    var rays = 0u;
-    while (ray_stack_size > 0u && rays < ray_bound) {
-        rays++;
-        ray_stack_size--;
-        let ray = ray_stack[ray_stack_size];
-        let hit = scene_intersect(ray.origin, ray.direction, T_INFINITY);
+    var ray: Ray;
+    var surface: Surface;
+    // The light samples that the surface still waits for.
+    var samples = vec2<u32>(0u);
+    let most_samples = max(frame.light_samples, frame.deep_light_samples);
+    var turns_left = (1u + RAY_STACK_SIZE * frame.max_depth) * (1u + most_samples);
+    while ((samples.x < samples.y || ray_stack_size > 0u) && turns_left > 0u) {
+        turns_left--;
+        let lighting = samples.x < samples.y;
+        var light: LightSample;
+        var origin: vec3<f32>;
+        var direction: vec3<f32>;
+        if (lighting) {
+            light = light_sample(surface, materials[surface.material], -ray.direction, ray.index, ray.key, ray.depth, samples.x);
+            samples.x++;
+            if (all(light.radiance == vec3<f32>(0.0))) {
+                continue;
+            }
+            tally.rays[RAY_SHADOW] += 1u;
+            origin = light.origin;
+            direction = light.to_light;
+        } else {
+            ray_stack_size--;
+            ray = ray_stack[ray_stack_size];
+            origin = ray.origin;
+            direction = ray.direction;
+        }
+        let hit = traverse(origin, direction, select(T_INFINITY, SHADOW_T_MAX, lighting), lighting);
+        if (lighting) {
+            radiance += select(ray.weight * light.radiance, vec3<f32>(0.0), hit.t > 0.0);
+            continue;
+        }
         if (hit.t < 0.0) {
             if (ray.depth == 0u && (frame.flags & FRAME_TRANSPARENT) != 0u) {
                 coverage = 0.0;
             } else {
-                radiance += ray.weight * background(ray.direction);
+                radiance += ray.weight * background(direction);
             }
             continue;
         }
-        let surface = surface_at(hit, ray.origin, ray.direction);
+        surface = surface_at(hit, origin, direction);
         let material = materials[surface.material];
-        let direct = direct_light(surface, material, -ray.direction, ray.index, ray.key, ray.depth);
-        radiance += ray.weight * (material.emission + frame.ambient * material.diffuse + direct);
+        radiance += ray.weight * (material.emission + frame.ambient * material.diffuse);
+        samples = light_sample_range(ray.depth);
         if ((HAS_REFLECTION || HAS_REFRACTION) && ray.depth < frame.max_depth) {
             spawn_rays(surface, material, ray);
         }
     }
-    if (ray_stack_size > 0u) {
+    if (samples.x < samples.y || ray_stack_size > 0u) {
         tally.flags |= STATUS_LOOP_BOUND;
     }
     return vec4<f32>(radiance, coverage);

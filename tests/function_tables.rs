@@ -72,7 +72,7 @@ impl Shape<'_> {
             inputs.push([vec3_lane(origin, UNBOUNDED), vec3_lane(direction, 0.0), self.radii_lane()]);
             // Cut short at the hit, just behind it, and in front of it.
             let t = (self.intersect)(origin, direction, UNBOUNDED).t;
-            if inputs.len() % 4 == 0 && t > 0.0 {
+            if inputs.len().is_multiple_of(4) && t > 0.0 {
                 for t_max in [t, t.next_up(), t * 0.5] {
                     inputs.push([vec3_lane(origin, t_max), vec3_lane(direction, 0.0), self.radii_lane()]);
                 }

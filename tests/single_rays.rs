@@ -160,7 +160,7 @@ fn crowded_scene() -> Scene {
         Shape::Mesh(mesh),
     ];
     for n in 0..140_u32 {
-        let random = |dimension| DVec3::from(sobol_2d(n, dimension).extend(sobol_2d(n, dimension + 1).x).as_dvec3());
+        let random = |dimension| sobol_2d(n, dimension).extend(sobol_2d(n, dimension + 1).x).as_dvec3();
         let place = (random(1) * 2.0 - 1.0) * 5.0;
         let angles = random(3) * std::f64::consts::TAU;
         let mut size = 0.2 + random(5);

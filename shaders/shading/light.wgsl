@@ -31,57 +31,57 @@ fn attenuation(light: Light, distance: f32) -> f32 {
     return 1.0 / max(c.x + c.y * distance + c.z * distance * distance, 1e-20);
 }
 
-// Light from the lights that a surface sends to the viewer: Whitted's sum, with soft shadows by distributed shadow rays
-// (Cook, Porter, Carpenter 1984, section 4). v is the unit vector to the viewer; index and key number the ray that
-// came. At depth 0 a pass takes its slice of light_count * shadow_count samples; deeper, each light gets one, or where
-// lights are many a stratified choice of them.
-fn direct_light(surface: Surface, material: Material, v: vec3<f32>, index: u32, key: u32, depth: u32) -> vec3<f32> {
-    var sum = vec3<f32>(0.0);
-    var first = 0u;
-    var last = frame.deep_light_samples;
-    if (depth == 0u) {
-        first = dispatch.pass_index * frame.light_samples;
-        last = min(first + frame.light_samples, frame.light_count * frame.shadow_count);
+// The light samples that a hit takes, first and last + 1. At depth 0 a pass takes its slice of light_count *
+// shadow_count samples; deeper, each light gets one, or where lights are many a stratified choice of them.
+fn light_sample_range(depth: u32) -> vec2<u32> {
+    if (depth > 0u) {
+        return vec2<u32>(0u, frame.deep_light_samples);
     }
-    let blinn = (frame.flags & FRAME_BLINN) != 0u;
-    let origin = offset_ray_origin(surface.point, surface.geometric_normal);
-    for (var sample = first; sample < last; sample++) {
-        var light_index = sample;
-        var split_index = index;
-        var weight = 1.0;
-        if (depth == 0u) {
-            light_index = sample / frame.shadow_count;
-            split_index = index * frame.shadow_count + sample % frame.shadow_count;
-            weight = f32(frame.pass_count) / f32(frame.shadow_count);
-        } else if (frame.light_count > frame.deep_light_samples) {
-            let choice = sobol_2d(index, hash_combine(key, DIMENSION_LIGHT_CHOICE)).x;
-            let share = f32(frame.light_count) / f32(frame.deep_light_samples);
-            light_index = min(u32((f32(sample) + choice) * share), frame.light_count - 1u);
-            weight = share;
-        }
-        let light = lights[light_index];
-        var xi = vec2<f32>(0.5);
-        if (HAS_AREA_LIGHT) {
-            xi = sobol_2d(split_index, hash_combine(key, DIMENSION_LIGHT + light_index));
-        }
-        let target_point = sample_light(light, surface.point, xi);
-        let to_light = target_point - surface.point;
-        let distance = sqrt(dot(to_light, to_light));
-        let l = to_light / max(distance, 1e-20);
-        // A normal that interpolation or a map has turned must not let in light from below the true surface.
-        let above = dot(surface.geometric_normal, l) > 0.0 && dot(surface.shading_normal, l) > 0.0;
-        if (!above) {
-            continue;
-        }
-        tally.rays[RAY_SHADOW] += 1u;
-        if (scene_occluded(origin, target_point - origin, SHADOW_T_MAX)) {
-            continue;
-        }
-        let reflected = phong(material, surface.shading_normal, l, v, blinn);
-        sum += (weight * attenuation(light, distance)) * (light.colour * reflected);
-    }
-    return sum;
+    let first = dispatch.pass_index * frame.light_samples;
+    return vec2<u32>(first, min(first + frame.light_samples, frame.light_count * frame.shadow_count));
 }
 
-// A shadow ray runs from t = 0 to the light at t = 1; a surface that carries the light does not shade it.
+// A shadow ray from a surface to a point of a light.
+struct LightSample {
+    // Where it starts, and the way to the light: t = 1 is there.
+    origin: vec3<f32>,
+    to_light: vec3<f32>,
+    // What the surface sends to the viewer if nothing is in between.
+    radiance: vec3<f32>,
+};
+
+// One term of Whitted's sum over the lights, with soft shadows by distributed shadow rays (Cook, Porter, Carpenter
+// 1984, section 4). v is the unit vector to the viewer; index, key and depth are those of the ray that came.
+fn light_sample(surface: Surface, material: Material, v: vec3<f32>, index: u32, key: u32, depth: u32, sample: u32) -> LightSample {
+    var light_index = sample;
+    var split_index = index;
+    var weight = 1.0;
+    if (depth == 0u) {
+        light_index = sample / frame.shadow_count;
+        split_index = index * frame.shadow_count + sample % frame.shadow_count;
+        weight = f32(frame.pass_count) / f32(frame.shadow_count);
+    } else if (frame.light_count > frame.deep_light_samples) {
+        let choice = sobol_2d(index, hash_combine(key, DIMENSION_LIGHT_CHOICE)).x;
+        let share = f32(frame.light_count) / f32(frame.deep_light_samples);
+        light_index = min(u32((f32(sample) + choice) * share), frame.light_count - 1u);
+        weight = share;
+    }
+    let light = lights[light_index];
+    var xi = vec2<f32>(0.5);
+    if (HAS_AREA_LIGHT) {
+        xi = sobol_2d(split_index, hash_combine(key, DIMENSION_LIGHT + light_index));
+    }
+    let on_light = sample_light(light, surface.point, xi);
+    let from_surface = on_light - surface.point;
+    let distance = sqrt(dot(from_surface, from_surface));
+    let l = from_surface / max(distance, 1e-20);
+    let reflected = phong(material, surface.shading_normal, l, v, (frame.flags & FRAME_BLINN) != 0u);
+    let radiance = (weight * attenuation(light, distance)) * (light.colour * reflected);
+    // A normal that interpolation or a map has turned must not let in light from below the true surface.
+    let above = dot(surface.geometric_normal, l) > 0.0;
+    let origin = offset_ray_origin(surface.point, surface.geometric_normal);
+    return LightSample(origin, on_light - origin, select(vec3<f32>(0.0), radiance, above));
+}
+
+// A shadow ray ends just before t = 1: a surface that carries the light does not shade it.
 const SHADOW_T_MAX: f32 = 0.9999;

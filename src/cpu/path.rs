@@ -2,18 +2,18 @@
 
 use crate::cpu::bindings::Bindings;
 use crate::cpu::camera::CameraRay;
-use crate::cpu::geometry::bvh::scene_intersect;
+use crate::cpu::geometry::bvh::{scene_intersect, scene_occluded};
 use crate::cpu::geometry::hit::Surface;
 use crate::cpu::geometry::instance::surface_at;
 use crate::cpu::math::elementary::unit_vector;
 use crate::cpu::math::offset::offset_ray_origin;
 use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::math::sampling::{keep_above, sample_glossy};
-use crate::cpu::shading::light::direct_light;
+use crate::cpu::shading::light::{SHADOW_T_MAX, light_sample, light_sample_range};
 use crate::cpu::shading::material::{
     fresnel_schlick, media_contains, media_enter, media_index, media_leave, refract_direction,
 };
-use crate::layout::{FRAME_TRANSPARENT, Material, RAY_REFLECTED, RAY_REFRACTED};
+use crate::layout::{FRAME_TRANSPARENT, Material, RAY_REFLECTED, RAY_REFRACTED, RAY_SHADOW};
 use crate::renderer::Tally;
 use glam::{UVec2, Vec3, Vec4};
 
@@ -168,8 +168,17 @@ fn ray_radiance(scene: &Bindings, ray: &Ray, pass_index: u32, tally: &mut Tally)
     }
     let surface = surface_at(scene, hit, ray.origin, ray.direction);
     let material = &scene.materials[surface.material as usize];
-    let direct = direct_light(scene, &surface, material, -ray.direction, ray, pass_index, tally);
-    let mut radiance = material.emission + scene.frame.ambient * material.diffuse + direct;
+    let mut radiance = material.emission + scene.frame.ambient * material.diffuse;
+    for sample in light_sample_range(scene.frame, pass_index, ray.depth) {
+        let light = light_sample(scene, &surface, material, -ray.direction, ray, sample);
+        if light.radiance == Vec3::ZERO {
+            continue;
+        }
+        tally.rays[RAY_SHADOW as usize] += 1;
+        if !scene_occluded(scene, light.origin, light.to_light, SHADOW_T_MAX, tally) {
+            radiance += light.radiance;
+        }
+    }
     if ray.depth < scene.frame.max_depth {
         radiance += spawn_rays(scene, &surface, material, ray, pass_index, tally);
     }

@@ -80,7 +80,10 @@ impl Call<'_> {
         if self.arguments.iter().skip(most).any(|value| !value.is_nil()) && self.state_mut().surplus.insert(name) {
             self.state_mut().warn(
                 self.lua,
-                &format!("{name} takes {most} arguments; the others are ignored (said once for each function)"),
+                &format!(
+                    "{name} takes at most {most} argument{}; the others are ignored (said once for each function)",
+                    if most == 1 { "" } else { "s" }
+                ),
             );
         }
     }

@@ -164,6 +164,6 @@ fn surplus_arguments_are_ignored_with_one_warning_a_function() {
     let warnings: Vec<String> = summary.warnings.iter().map(|warning| sandbox.shorten(warning)).collect();
     assert_eq!(
         warnings,
-        ["scene.lua:1: gr.sphere takes 1 arguments; the others are ignored (said once for each function)"]
+        ["scene.lua:1: gr.sphere takes at most 1 argument; the others are ignored (said once for each function)"]
     );
 }

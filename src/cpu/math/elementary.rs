@@ -63,7 +63,7 @@ mod tests {
             let expected = f64::from(base).powf(f64::from(exponent));
             worst[2] = worst[2].max((f64::from(power(base, exponent)) - expected).abs());
         }
-        assert!(worst[0] < 4e-7 && worst[1] < 3e-7 && worst[2] < 2e-5, "{worst:?}");
+        assert!(worst[0] < 6e-7 && worst[1] < 3e-7 && worst[2] < 2e-5, "{worst:?}");
         assert_eq!((power(0.0, 0.0), power(0.0, 2.0), power(1.0, 5000.0)), (1.0, 0.0, 1.0));
         assert_eq!(exp2_poly(-1000.0), 0.0);
     }

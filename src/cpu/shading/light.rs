@@ -1,16 +1,15 @@
 //! Lights: where shadow rays aim, and what arrives; twin of `shaders/shading/light.wgsl`.
 
 use crate::cpu::bindings::Bindings;
-use crate::cpu::geometry::bvh::scene_occluded;
 use crate::cpu::geometry::hit::Surface;
 use crate::cpu::math::offset::offset_ray_origin;
 use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::math::sampling::sample_cone;
 use crate::cpu::path::{DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, Ray};
 use crate::cpu::shading::material::phong;
-use crate::layout::{FRAME_BLINN, LIGHT_PARALLELOGRAM, LIGHT_POINT, Light, Material, RAY_SHADOW};
-use crate::renderer::Tally;
+use crate::layout::{FRAME_BLINN, Frame, LIGHT_PARALLELOGRAM, LIGHT_POINT, Light, Material};
 use glam::{Vec2, Vec3};
+use std::ops::Range;
 
 /// A point on the light as seen from `point` (world space): the point itself, uniform over a parallelogram, or uniform
 /// in the solid angle of a ball (a point within the ball sees its whole surface).
@@ -43,67 +42,67 @@ pub fn attenuation(light: &Light, distance: f32) -> f32 {
     1.0 / (c.x + c.y * distance + c.z * distance * distance).max(1e-20)
 }
 
-/// Light from the lights that a surface sends to the viewer: Whitted's sum, with soft shadows by distributed shadow
-/// rays (Cook, Porter, Carpenter 1984, section 4). v is the unit vector to the viewer, `ray` the ray that came. At depth
-/// 0 a pass takes its slice of light_count * shadow_count samples; deeper, each light gets one, or where lights are
-/// many a stratified choice of them.
-pub fn direct_light(
+/// The light samples that a hit takes. At depth 0 a pass takes its slice of light_count * shadow_count samples; deeper,
+/// each light gets one, or where lights are many a stratified choice of them.
+pub fn light_sample_range(frame: &Frame, pass_index: u32, depth: u32) -> Range<u32> {
+    if depth > 0 {
+        return 0..frame.deep_light_samples;
+    }
+    let first = pass_index * frame.light_samples;
+    first..(first + frame.light_samples).min(frame.light_count * frame.shadow_count)
+}
+
+/// A shadow ray from a surface to a point of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Where it starts, and the way to the light: t = 1 is there.
+    pub origin: Vec3,
+    pub to_light: Vec3,
+    /// What the surface sends to the viewer if nothing is in between.
+    pub radiance: Vec3,
+}
+
+/// One term of Whitted's sum over the lights, with soft shadows by distributed shadow rays (Cook, Porter, Carpenter
+/// 1984, section 4). v is the unit vector to the viewer, `ray` the ray that came.
+pub fn light_sample(
     scene: &Bindings,
     surface: &Surface,
     material: &Material,
     v: Vec3,
     ray: &Ray,
-    pass_index: u32,
-    tally: &mut Tally,
-) -> Vec3 {
+    sample: u32,
+) -> LightSample {
     let frame = scene.frame;
-    let mut sum = Vec3::ZERO;
-    let mut first = 0;
-    let mut last = frame.deep_light_samples;
+    let mut light_index = sample;
+    let mut split_index = ray.index;
+    let mut weight = 1.0;
     if ray.depth == 0 {
-        first = pass_index * frame.light_samples;
-        last = (first + frame.light_samples).min(frame.light_count * frame.shadow_count);
+        light_index = sample / frame.shadow_count;
+        split_index = ray.index.wrapping_mul(frame.shadow_count).wrapping_add(sample % frame.shadow_count);
+        weight = frame.pass_count as f32 / frame.shadow_count as f32;
+    } else if frame.light_count > frame.deep_light_samples {
+        let choice = sobol_2d(ray.index, hash_combine(ray.key, DIMENSION_LIGHT_CHOICE)).x;
+        let share = frame.light_count as f32 / frame.deep_light_samples as f32;
+        light_index = (((sample as f32 + choice) * share) as u32).min(frame.light_count - 1);
+        weight = share;
     }
-    let blinn = frame.flags & FRAME_BLINN != 0;
+    let light = &scene.lights[light_index as usize];
+    let xi = if light.kind == LIGHT_POINT {
+        Vec2::splat(0.5)
+    } else {
+        sobol_2d(split_index, hash_combine(ray.key, DIMENSION_LIGHT.wrapping_add(light_index)))
+    };
+    let on_light = sample_light(light, surface.point, xi);
+    let from_surface = on_light - surface.point;
+    let distance = from_surface.dot(from_surface).sqrt();
+    let l = from_surface / distance.max(1e-20);
+    let reflected = phong(material, surface.shading_normal, l, v, frame.flags & FRAME_BLINN != 0);
+    let radiance = (weight * attenuation(light, distance)) * (light.colour * reflected);
+    // A normal that interpolation or a map has turned must not let in light from below the true surface.
+    let above = surface.geometric_normal.dot(l) > 0.0;
     let origin = offset_ray_origin(surface.point, surface.geometric_normal);
-    for sample in first..last {
-        let mut light_index = sample;
-        let mut split_index = ray.index;
-        let mut weight = 1.0;
-        if ray.depth == 0 {
-            light_index = sample / frame.shadow_count;
-            split_index = ray.index.wrapping_mul(frame.shadow_count).wrapping_add(sample % frame.shadow_count);
-            weight = frame.pass_count as f32 / frame.shadow_count as f32;
-        } else if frame.light_count > frame.deep_light_samples {
-            let choice = sobol_2d(ray.index, hash_combine(ray.key, DIMENSION_LIGHT_CHOICE)).x;
-            let share = frame.light_count as f32 / frame.deep_light_samples as f32;
-            light_index = (((sample as f32 + choice) * share) as u32).min(frame.light_count - 1);
-            weight = share;
-        }
-        let light = &scene.lights[light_index as usize];
-        let xi = if light.kind == LIGHT_POINT {
-            Vec2::splat(0.5)
-        } else {
-            sobol_2d(split_index, hash_combine(ray.key, DIMENSION_LIGHT.wrapping_add(light_index)))
-        };
-        let target_point = sample_light(light, surface.point, xi);
-        let to_light = target_point - surface.point;
-        let distance = to_light.dot(to_light).sqrt();
-        let l = to_light / distance.max(1e-20);
-        // A normal that interpolation or a map has turned must not let in light from below the true surface.
-        let above = surface.geometric_normal.dot(l) > 0.0 && surface.shading_normal.dot(l) > 0.0;
-        if !above {
-            continue;
-        }
-        tally.rays[RAY_SHADOW as usize] += 1;
-        if scene_occluded(scene, origin, target_point - origin, SHADOW_T_MAX, tally) {
-            continue;
-        }
-        let reflected = phong(material, surface.shading_normal, l, v, blinn);
-        sum += (weight * attenuation(light, distance)) * (light.colour * reflected);
-    }
-    sum
+    LightSample { origin, to_light: on_light - origin, radiance: if above { radiance } else { Vec3::ZERO } }
 }
 
-/// A shadow ray runs from t = 0 to the light at t = 1; a surface that carries the light does not shade it.
-const SHADOW_T_MAX: f32 = 0.9999;
+/// A shadow ray ends just before t = 1: a surface that carries the light does not shade it.
+pub const SHADOW_T_MAX: f32 = 0.9999;
