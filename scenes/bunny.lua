@@ -1,6 +1,6 @@
 -- The Stanford bunny: one mesh of 22,592 triangles in memory, many bunnies in the picture.
 -- Look for the mirror that shows their backs, the glass bunny on the right, and soft shadows.
--- 640x360, 9 camera samples a pixel: about ten seconds on two CPU cores.
+-- 640x360, 9 camera samples a pixel: under ten seconds on two CPU cores.
 
 local scene = gr.node('scene')
 

@@ -1,7 +1,7 @@
 -- Glass and water on a tiled floor, with coloured columns behind.
 -- Look for: the columns upside down in the big ball; the ball of glass that is faint in the water block, since the two
 -- indices are close; the air bubble beside it, bright at the rim by total internal reflection; the ring.
--- 640x360, 16 camera samples a pixel: some ten seconds on two CPU cores.
+-- 640x360, 16 camera samples a pixel: under ten seconds on two CPU cores.
 
 local function transparent(ior)
   return gr.refl_material({ 0, 0, 0 }, { 0.7, 0.7, 0.7 }, 250, 1, 0, ior)

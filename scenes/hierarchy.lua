@@ -1,7 +1,7 @@
 -- A desk lamp takes a hop, in five poses: one function of five joint angles.
 -- Each part is made once and stands in all five lamps (instances); the bulb hangs from the shade, which is itself a
 -- shape. Look for the pools of light: each lamp carries a light where its joints have brought the bulb.
--- 640x360, 9 camera samples a pixel, 6 lights: about ten seconds on two CPU cores.
+-- 640x360, 9 camera samples a pixel, 6 lights: under ten seconds on two CPU cores.
 
 local paint = gr.material({ 0.80, 0.30, 0.16 }, { 0.5, 0.5, 0.5 }, 60)
 local steel = gr.refl_material({ 0.30, 0.31, 0.33 }, { 0.7, 0.7, 0.7 }, 90, 0.35)

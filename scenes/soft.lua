@@ -1,7 +1,7 @@
 -- All five sampling counts at work: AA, GLOSSY, SHADOW, DOF and LENS.
 -- Look for reflections that blur from the first ball (a mirror) to the last, the floor's reflections that blur with
 -- height, shadows that are sharp at the foot and soft further on, and the far and near balls out of focus.
--- 480x270, 16 camera samples a pixel, each with 3 shadow and 3 glossy rays: some ten seconds on two CPU cores.
+-- 480x270, 16 camera samples a pixel, each with 3 shadow and 3 glossy rays: under ten seconds on two CPU cores.
 
 local scene = gr.node('scene')
 
