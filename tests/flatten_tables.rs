@@ -124,6 +124,7 @@ fn features_are_those_of_the_scene() {
     }
     let with_material = |material| {
         let mut stage = Stage::new(8, 8);
+        stage.scene.sampling.glossy = 2;
         stage.add(Shape::Cube, DAffine3::IDENTITY, material);
         on(flattened(&stage.finish()).features)
     };

@@ -8,6 +8,7 @@ use crate::support::rays::{draw, placement, power_of_ten, unit_vector};
 use glam::{DVec3, Vec3};
 use gpu_trace::cpu::geometry::triangle::*;
 use gpu_trace::cpu::math::{offset::*, roots::*};
+use gpu_trace::flatten::encode_octahedral;
 use proptest::prelude::*;
 
 const UNBOUNDED: f32 = 3.0e38;

@@ -9,6 +9,7 @@ use crate::support::oracle::exact;
 use crate::support::rays::{config, power_of_ten, unit_vector};
 use glam::{DVec3, Vec3};
 use gpu_trace::cpu::geometry::triangle::*;
+use gpu_trace::flatten::encode_octahedral;
 use proptest::prelude::*;
 use std::cell::Cell;
 

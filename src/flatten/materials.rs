@@ -28,18 +28,20 @@ pub fn materials_in_use(scene: &Scene, placements: &[Placement]) -> Result<(Vec<
             "the scene uses {media} refractive materials; at most {MAX_MEDIA} are possible"
         )));
     }
-    let packed = (1..).zip(&order).map(|(medium, id)| pack(described(*id), medium)).collect();
+    // One glossy ray is none: the reflection is a mirror's.
+    let spread = if scene.sampling.glossy > 1 { 1.0 } else { 0.0 };
+    let packed = (1..).zip(&order).map(|(medium, id)| pack(described(*id), medium, spread)).collect();
     Ok((packed, order.into_iter().zip(0..).collect()))
 }
 
-fn pack(material: &scene::Material, medium: u32) -> Material {
+fn pack(material: &scene::Material, medium: u32, spread: f32) -> Material {
     Material {
         diffuse: material.diffuse,
         shininess: material.shininess,
         specular: material.specular,
         reflection: material.reflection,
         emission: Vec3::ZERO,
-        glossy: material.glossy,
+        glossy: material.glossy * spread,
         ior: material.ior.unwrap_or(0.0),
         density: 0.0,
         noise_z: 0.0,

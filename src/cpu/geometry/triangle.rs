@@ -82,20 +82,6 @@ pub fn decode_octahedral(packed: u32) -> Vec3 {
     Vec3::new(vx, vy, z) / (vx * vx + vy * vy + z * z).sqrt()
 }
 
-/// The octahedral packing of a direction of any length but zero; decoding is off by 7e-5 radians at most. Only the
-/// host packs, so this has no twin.
-pub fn encode_octahedral(direction: Vec3) -> u32 {
-    let n = direction / (direction.x.abs() + direction.y.abs() + direction.z.abs());
-    let (x, y) = if n.z >= 0.0 {
-        (n.x, n.y)
-    } else {
-        // The lower half is folded over the diagonals.
-        ((1.0 - n.y.abs()).copysign(n.x), (1.0 - n.x.abs()).copysign(n.y))
-    };
-    let snorm = |v: f32| u32::from((v.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
-    snorm(x) | snorm(y) << 16
-}
-
 /// Unit normal of the triangle's plane, on the side from which the corners run counterclockwise; +y where it has no
 /// area.
 #[inline]
