@@ -23,3 +23,7 @@ override HAS_REFRACTION: bool = true;
 override HAS_GLOSSY: bool = true;
 override HAS_AREA_LIGHT: bool = true;
 override HAS_LENS: bool = true;
+override HAS_TEXTURE: bool = true;
+override HAS_BUMP: bool = true;
+override HAS_MIST: bool = true;
+override HAS_BACKGROUND_IMAGE: bool = true;

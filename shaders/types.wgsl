@@ -44,6 +44,12 @@ struct Frame {
     deep_light_samples: u32,
     // Glossy reflection rays at depth 0 in one pass.
     glossy_samples: u32,
+    // The mists around the eye, see shading/medium.wgsl.
+    mist: vec2<u32>,
+    // First word of the surrounding picture in `texels`, or NONE for the gradient.
+    background_image: u32,
+    // Angle between neighbouring pixels in the middle of the picture, radians.
+    pixel_spread: f32,
 };
 
 // What one dispatch renders: one pass of one camera sample over a run of 8 x 8 pixel blocks of one band.
@@ -186,6 +192,12 @@ const SHAPE_PLANE: u32 = 5u;
 const SHAPE_MESH: u32 = 6u;
 
 const TRIANGLE_SMOOTH: u32 = 1u;       // n0..n2 are given; otherwise the geometric normal is used
+
+const MATERIAL_TEXTURE_REPLACES: u32 = 1u;  // the diffuse colour comes from `texture`
+const MATERIAL_NOISE_BUMP: u32 = 2u;        // the bump is Perlin noise at height noise_z, in place of an image
+const MATERIAL_MIST: u32 = 4u;              // a volume of `density`, not a surface
+
+const INSTANCE_MIST: u32 = 1u;              // shadow rays pass
 
 const LIGHT_POINT: u32 = 0u;
 const LIGHT_PARALLELOGRAM: u32 = 1u;

@@ -34,6 +34,9 @@ pub struct Frame {
     pub light_samples: u32,
     pub deep_light_samples: u32,
     pub glossy_samples: u32,
+    pub mist: UVec2,
+    pub background_image: u32,
+    pub pixel_spread: f32,
 }
 
 /// Constants of one dispatch; twin of `Dispatch`.
@@ -170,6 +173,12 @@ pub const SHAPE_PLANE: u32 = 5;
 pub const SHAPE_MESH: u32 = 6;
 
 pub const TRIANGLE_SMOOTH: u32 = 1;
+
+pub const MATERIAL_TEXTURE_REPLACES: u32 = 1;
+pub const MATERIAL_NOISE_BUMP: u32 = 2;
+pub const MATERIAL_MIST: u32 = 4;
+
+pub const INSTANCE_MIST: u32 = 1;
 
 pub const LIGHT_POINT: u32 = 0;
 pub const LIGHT_PARALLELOGRAM: u32 = 1;

@@ -128,13 +128,16 @@ fn features_are_those_of_the_scene() {
         stage.add(Shape::Cube, DAffine3::IDENTITY, material);
         on(flattened(&stage.finish()).features)
     };
-    let base = Material::default();
-    assert_eq!(with_material(Material { glossy: 0.5, ..base }), ["HAS_CUBE"]);
-    assert_eq!(with_material(Material { reflection: 0.5, ..base }), ["HAS_CUBE", "HAS_REFLECTION"]);
-    let glossy = Material { reflection: 0.5, glossy: 0.1, ..base };
+
+    assert_eq!(with_material(Material { glossy: 0.5, ..Material::default() }), ["HAS_CUBE"]);
+    assert_eq!(with_material(Material { reflection: 0.5, ..Material::default() }), ["HAS_CUBE", "HAS_REFLECTION"]);
+    let glossy = Material { reflection: 0.5, glossy: 0.1, ..Material::default() };
     assert_eq!(with_material(glossy), ["HAS_CUBE", "HAS_REFLECTION", "HAS_GLOSSY"]);
     // Total internal reflection needs no reflective material.
-    assert_eq!(with_material(Material { ior: Some(1.5), ..base }), ["HAS_CUBE", "HAS_REFLECTION", "HAS_REFRACTION"]);
+    assert_eq!(
+        with_material(Material { ior: Some(1.5), ..Material::default() }),
+        ["HAS_CUBE", "HAS_REFLECTION", "HAS_REFRACTION"]
+    );
     let mut stage = Stage::new(8, 8);
     stage.scene.camera.lens_edge = 0.5;
     stage.add_light(DVec3::Y, Vec3::ONE, LightExtent::Sphere { radius: 1.0 });

@@ -77,6 +77,9 @@ fn rust_structs() -> Vec<Struct> {
             light_samples,
             deep_light_samples,
             glossy_samples,
+            mist,
+            background_image,
+            pixel_spread,
         }),
         rust_struct!(Dispatch {
             sample_index,
@@ -135,6 +138,7 @@ fn rust_constants() -> Vec<(String, u32)> {
         FRAME_SAMPLE_CENTRE FRAME_SAMPLE_CORNER FRAME_TRANSPARENT FRAME_BLINN
         SHAPE_SPHERE SHAPE_CUBE SHAPE_CYLINDER SHAPE_CONE SHAPE_TORUS SHAPE_PLANE SHAPE_MESH
         TRIANGLE_SMOOTH
+        MATERIAL_TEXTURE_REPLACES MATERIAL_NOISE_BUMP MATERIAL_MIST INSTANCE_MIST
         LIGHT_POINT LIGHT_PARALLELOGRAM LIGHT_SPHERE
         STATUS_LOOP_BOUND STATUS_STACK_FULL STATUS_NOT_FINITE STATUS_SATURATED
         RAY_CAMERA RAY_SHADOW RAY_REFLECTED RAY_REFRACTED RAY_KINDS RAY_SLOTS

@@ -79,8 +79,8 @@ fn mixed_stage() -> Stage {
     let brushed = Material { reflection: 0.7, glossy: 0.3, ..paint(0.3, 0.2, 0.1) };
     let place = |x: f64, y: f64, z: f64| DAffine3::from_translation(DVec3::new(x, y, z));
     stage.add(Shape::Plane, place(0.0, -1.0, 0.0), Material { specular: Vec3::splat(0.4), ..paint(0.6, 0.6, 0.5) });
-    stage.add(Shape::Sphere, place(-1.2, 0.0, -4.0), glass);
-    stage.add(Shape::Torus { major: 0.8, minor: 0.3 }, place(1.2, -0.6, -4.0), brushed);
+    stage.add(Shape::Sphere, place(-1.2, 0.0, -4.0), glass.clone());
+    stage.add(Shape::Torus { major: 0.8, minor: 0.3 }, place(1.2, -0.6, -4.0), brushed.clone());
     stage.add(Shape::Cone, place(0.0, 0.6, -6.0) * DAffine3::from_scale(DVec3::new(1.0, 1.6, 0.7)), brushed);
     stage.add(Shape::Cylinder, place(2.4, 0.0, -6.0) * DAffine3::from_scale(DVec3::new(-0.5, 1.0, 0.5)), glass);
     stage.add_light(DVec3::new(-3.0, 5.0, 0.0), Vec3::splat(0.6), LightExtent::Classic);

@@ -26,7 +26,7 @@ fn trace_rays(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
     tally = Tally(0u, vec4<u32>(0u));
     let occluded = select(0u, 1u, scene_occluded(origin, direction, t_max));
     let hit = scene_intersect(origin, direction, t_max);
-    var surface = Surface(vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0), false, 0u);
+    var surface: Surface;
     if (hit.t > 0.0) {
         surface = surface_at(hit, origin, direction);
     }
@@ -104,6 +104,7 @@ fn found_on_cpu(buffers: &SceneBuffers, rays: &[Ray]) -> Vec<Found> {
         shading_normal: Vec3::ZERO,
         entering: false,
         material: 0,
+        diffuse: Vec3::ZERO,
     };
     let found = |ray: &Ray| {
         let mut tally = Tally::default();

@@ -27,4 +27,13 @@ struct Surface {
     // The ray met the outer side.
     entering: bool,
     material: u32,
+    // The material's diffuse colour, or the texture's.
+    diffuse: vec3<f32>,
+};
+
+// Texture coordinates of a point and the change of the point with each, in the space of the point.
+struct Parameterisation {
+    uv: vec2<f32>,
+    dpdu: vec3<f32>,
+    dpdv: vec3<f32>,
 };

@@ -132,5 +132,6 @@ fn surface_at(hit: Hit, origin: vec3<f32>, direction: vec3<f32>) -> Surface {
         shading_normal,
         entering,
         instances[hit.instance].material,
+        materials[instances[hit.instance].material].diffuse,
     );
 }

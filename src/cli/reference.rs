@@ -45,7 +45,7 @@ pub fn render_tile(renderer: &mut dyn Renderer) -> Result<Rendered> {
     };
     let shapes = [
         (Shape::Plane, floor, DAffine3::from_translation(DVec3::NEG_Y)),
-        (Shape::Sphere, paint, DAffine3::from_translation(DVec3::new(-1.1, 0.0, 0.0))),
+        (Shape::Sphere, paint.clone(), DAffine3::from_translation(DVec3::new(-1.1, 0.0, 0.0))),
         (Shape::Sphere, glass, DAffine3::from_translation(DVec3::new(1.1, 0.0, 0.4))),
         (
             Shape::Torus { major: 1.0, minor: 0.3 },
@@ -73,6 +73,7 @@ pub fn render_tile(renderer: &mut dyn Renderer) -> Result<Rendered> {
             colour: Vec3::splat(0.9),
             falloff: Vec3::X,
             extent: LightExtent::Classic,
+            visible: false,
         }],
         background: Background::default(),
         sampling: Sampling { camera: TILE_SAMPLES, shadow: 4, glossy: 2, max_depth: 4, seed: 1 },
@@ -117,6 +118,7 @@ pub fn render_known_answer(renderer: &mut dyn Renderer) -> Result<KnownAnswer> {
             colour: light,
             falloff: Vec3::new(1.0, 0.0, 1.0),
             extent: LightExtent::Classic,
+            visible: false,
         }],
         background: Background::default(),
         sampling: Sampling::default(),

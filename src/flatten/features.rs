@@ -23,6 +23,14 @@ pub struct FeatureSet {
     pub area_light: bool,
     /// A camera whose lens is not a pinhole.
     pub lens: bool,
+    /// A material whose diffuse colour comes from an image.
+    pub texture: bool,
+    /// A material with a bump map, of an image or of noise.
+    pub bump: bool,
+    /// A volume of mist.
+    pub mist: bool,
+    /// A picture around the scene.
+    pub background_image: bool,
 }
 
 impl FeatureSet {
@@ -39,6 +47,10 @@ impl FeatureSet {
         glossy: false,
         area_light: false,
         lens: false,
+        texture: false,
+        bump: false,
+        mist: false,
+        background_image: false,
     };
 
     pub const ALL_ON: FeatureSet = FeatureSet {
@@ -54,6 +66,10 @@ impl FeatureSet {
         glossy: true,
         area_light: true,
         lens: true,
+        texture: true,
+        bump: true,
+        mist: true,
+        background_image: true,
     };
 
     /// What these buffers need.
@@ -79,6 +95,12 @@ impl FeatureSet {
             glossy: materials.iter().any(|material| material.reflection != 0.0 && material.glossy != 0.0),
             area_light: buffers.lights.iter().any(|light| light.kind != layout::LIGHT_POINT),
             lens: buffers.frame.lens_edge != 0.0,
+            texture: materials.iter().any(|material| material.texture != layout::NONE),
+            bump: materials
+                .iter()
+                .any(|material| material.bump != layout::NONE || material.flags & layout::MATERIAL_NOISE_BUMP != 0),
+            mist: materials.iter().any(|material| material.flags & layout::MATERIAL_MIST != 0),
+            background_image: buffers.frame.background_image != layout::NONE,
         }
     }
 
@@ -97,6 +119,10 @@ impl FeatureSet {
             ("HAS_GLOSSY", self.glossy),
             ("HAS_AREA_LIGHT", self.area_light),
             ("HAS_LENS", self.lens),
+            ("HAS_TEXTURE", self.texture),
+            ("HAS_BUMP", self.bump),
+            ("HAS_MIST", self.mist),
+            ("HAS_BACKGROUND_IMAGE", self.background_image),
         ]
     }
 }

@@ -1,7 +1,7 @@
 //! The constants of one picture: camera, light counts, flags, and the plan of its work.
 
 use super::work::plan_work;
-use crate::layout::{FRAME_BLINN, FRAME_SAMPLE_CENTRE, FRAME_SAMPLE_CORNER, FRAME_TRANSPARENT, Frame};
+use crate::layout::{FRAME_BLINN, FRAME_SAMPLE_CENTRE, FRAME_SAMPLE_CORNER, FRAME_TRANSPARENT, Frame, NONE};
 use crate::scene::{PixelOrigin, Scene, Specular};
 use crate::{Error, Result};
 use glam::{UVec2, Vec3};
@@ -74,6 +74,8 @@ pub fn frame(scene: &Scene, plane_count: u32, has_root: bool) -> Result<Frame> {
         plane_count,
         has_root: u32::from(has_root),
         light_count: scene.lights.len() as u32,
+        background_image: NONE,
+        pixel_spread: (2.0 * (0.5 * camera.fov.to_radians()).tan() / f64::from(height)) as f32,
         ..Frame::default()
     };
     let vectors: [Vec3; 5] = [frame.eye, frame.ambient, frame.background_bottom, frame.background_top, frame.right];

@@ -1,5 +1,6 @@
-use super::{Geometry, Material};
+use super::{Bump, Geometry, Image, Material};
 use glam::DAffine3;
+use std::sync::Arc;
 
 /// Index into [`SceneGraph::nodes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -18,11 +19,23 @@ pub struct Node {
     pub children: Vec<NodeId>,
     pub geometry: Option<Geometry>,
     pub material: Option<MaterialId>,
+    /// Replaces the material's texture on this node.
+    pub texture: Option<Arc<Image>>,
+    /// Replaces the material's bump map on this node.
+    pub bump: Option<Bump>,
 }
 
 impl Node {
     pub fn new(name: impl Into<String>, geometry: Option<Geometry>) -> Self {
-        Node { name: name.into(), transform: DAffine3::IDENTITY, children: Vec::new(), geometry, material: None }
+        Node {
+            name: name.into(),
+            transform: DAffine3::IDENTITY,
+            children: Vec::new(),
+            geometry,
+            material: None,
+            texture: None,
+            bump: None,
+        }
     }
 }
 

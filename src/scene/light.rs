@@ -9,6 +9,8 @@ pub struct Light {
     /// (c0, c1, c2).
     pub falloff: Vec3,
     pub extent: LightExtent,
+    /// Cameras and reflections see the light itself, as a surface of its colour; for extents but `Classic`.
+    pub visible: bool,
 }
 
 /// What shadow rays aim at.

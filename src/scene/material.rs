@@ -1,7 +1,9 @@
+use super::Image;
 use glam::Vec3;
+use std::sync::Arc;
 
 /// Whitted's surface with Cook's glossy square and a refractive index. Colours are linear.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     pub diffuse: Vec3,
     /// Not multiplied by `diffuse`.
@@ -14,6 +16,23 @@ pub struct Material {
     pub glossy: f32,
     /// Refractive index, above 0; `None` is opaque.
     pub ior: Option<f32>,
+    /// Where given, the diffuse colour comes from this image.
+    pub texture: Option<Arc<Image>>,
+    pub bump: Option<Bump>,
+    /// Where given, the shape is a volume of mist: scattering events a world unit, in (0, 1]. Only `diffuse` and
+    /// `texture` count beside it.
+    pub density: Option<f32>,
+    /// Radiance that the surface sends out by itself.
+    pub emission: Vec3,
+}
+
+/// The height field of a bump map (Blinn 1978).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Bump {
+    /// Height is the mean of the image's red, green and blue.
+    Image(Arc<Image>),
+    /// Five octaves of Perlin noise over (u, v, z).
+    Noise { z: f32 },
 }
 
 impl Default for Material {
@@ -25,6 +44,10 @@ impl Default for Material {
             reflection: 0.0,
             glossy: 0.0,
             ior: None,
+            texture: None,
+            bump: None,
+            density: None,
+            emission: Vec3::ZERO,
         }
     }
 }

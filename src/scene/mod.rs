@@ -5,6 +5,7 @@
 mod camera;
 mod geometry;
 mod graph;
+mod image;
 mod light;
 mod material;
 mod mesh;
@@ -14,8 +15,9 @@ mod polygons;
 pub use camera::Camera;
 pub use geometry::{Geometry, Shape};
 pub use graph::{MaterialId, Node, NodeId, SceneGraph};
+pub use image::{Image, Texels};
 pub use light::{Light, LightExtent};
-pub use material::Material;
+pub use material::{Bump, Material};
 pub use mesh::Mesh;
 pub use obj::load_obj;
 pub use polygons::PolygonMesh;
@@ -64,18 +66,25 @@ impl Default for Sampling {
 }
 
 /// What a ray that leaves the scene sees.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Background {
     /// Linear radiance straight down and straight up (+y), blended by the height of the direction.
     pub bottom: Vec3,
     pub top: Vec3,
+    /// A picture all around in place of the colours: equirectangular, its middle towards -z, its top row straight up.
+    pub image: Option<Arc<Image>>,
     /// Camera rays that miss leave the pixel transparent; reflected and refracted ones see the colours above.
     pub transparent: bool,
 }
 
 impl Default for Background {
     fn default() -> Self {
-        Background { bottom: Vec3::new(0.82, 0.86, 0.90), top: Vec3::new(0.30, 0.46, 0.72), transparent: false }
+        Background {
+            bottom: Vec3::new(0.82, 0.86, 0.90),
+            top: Vec3::new(0.30, 0.46, 0.72),
+            image: None,
+            transparent: false,
+        }
     }
 }
 

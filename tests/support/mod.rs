@@ -43,7 +43,7 @@ impl Stage {
             },
             ambient: Vec3::ZERO,
             lights: Vec::new(),
-            background: Background { bottom: Vec3::ZERO, top: Vec3::ZERO, transparent: false },
+            background: Background { bottom: Vec3::ZERO, top: Vec3::ZERO, ..Background::default() },
             sampling: Sampling::default(),
             conventions: Conventions::default(),
             output: "unused.png".into(),
@@ -69,7 +69,7 @@ impl Stage {
     }
 
     pub fn add_light(&mut self, position: DVec3, colour: Vec3, extent: LightExtent) -> &mut Self {
-        self.scene.lights.push(Light { position, colour, falloff: Vec3::X, extent });
+        self.scene.lights.push(Light { position, colour, falloff: Vec3::X, extent, visible: false });
         self
     }
 

@@ -1,6 +1,6 @@
 //! What intersection returns; twin of `shaders/geometry/hit.wgsl`, where the fields are described.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 pub const MISS: f32 = -1.0;
 
@@ -26,4 +26,12 @@ pub struct Surface {
     pub shading_normal: Vec3,
     pub entering: bool,
     pub material: u32,
+    pub diffuse: Vec3,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameterisation {
+    pub uv: Vec2,
+    pub dpdu: Vec3,
+    pub dpdv: Vec3,
 }

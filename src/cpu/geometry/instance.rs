@@ -128,5 +128,6 @@ pub fn surface_at(scene: &Bindings, hit: Hit, origin: Vec3, direction: Vec3) -> 
         shading_normal,
         entering,
         material: instance.material,
+        diffuse: scene.materials[instance.material as usize].diffuse,
     }
 }

@@ -6,6 +6,7 @@ pub mod cube;
 pub mod cylinder;
 pub mod hit;
 pub mod instance;
+pub mod parameterisation;
 pub mod plane;
 pub mod sphere;
 pub mod torus;

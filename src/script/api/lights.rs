@@ -17,6 +17,6 @@ fn light(call: &Call) -> Outcome<Value> {
     if falloff.min_element() < 0.0 || falloff.max_element() == 0.0 {
         return Err(call.unexpected(2, "attenuation {c0, c1, c2}, none below 0 and one above"));
     }
-    let light = Light { position, colour, falloff, extent: LightExtent::Classic };
+    let light = Light { position, colour, falloff, extent: LightExtent::Classic, visible: false };
     Ok(Value::UserData(call.lua.create_userdata(LightHandle(light))?))
 }

@@ -1,0 +1,1 @@
+// Texture coordinates and tangents of the surface at a hit.

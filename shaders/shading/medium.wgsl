@@ -1,0 +1,1 @@
+// Mist: homogeneous volumes that scatter.

@@ -1,0 +1,1 @@
+//! What maps do to a surface: its colour from a texture, its normal from a bump map. Twin of `shaders/shading/detail.wgsl`.

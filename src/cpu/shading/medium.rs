@@ -1,0 +1,1 @@
+//! Mist: homogeneous volumes that scatter. Twin of `shaders/shading/medium.wgsl`.

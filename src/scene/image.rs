@@ -1,0 +1,18 @@
+/// An image in memory, rows from the top. 8-bit values are used as they stand in the file, over 255 and without decoding;
+/// float values are linear radiance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// For messages: the file it came from.
+    pub name: String,
+    /// Pixels; both at least 1.
+    pub width: u32,
+    pub height: u32,
+    pub texels: Texels,
+}
+
+/// The pixels of an [`Image`], `width * height` of them, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Texels {
+    Rgba8(Vec<[u8; 4]>),
+    Rgb32F(Vec<[f32; 3]>),
+}
