@@ -2,7 +2,6 @@
 
 use super::bounds::shape_bounds;
 use super::bvh;
-use super::materials::MaterialIndices;
 use super::mesh::Meshes;
 use super::walk::Placement;
 use crate::layout::{
@@ -29,20 +28,21 @@ pub struct BuiltInstances {
     pub depth: u32,
 }
 
+/// `materials` has one index for each placement.
 pub fn build(
     graph: &SceneGraph,
     placements: &[Placement],
     meshes: &Meshes,
-    materials: &MaterialIndices,
+    materials: &[u32],
 ) -> Result<BuiltInstances> {
     let mut planes = Vec::new();
     let mut bounded = Vec::with_capacity(placements.len());
     let mut boxes = Vec::with_capacity(placements.len());
     let mut instanced_triangles = 0;
-    for placement in placements {
+    for (placement, &material) in placements.iter().zip(materials) {
         let name = &graph.node(placement.node).name;
         let mut instance = pack(placement, name)?;
-        instance.material = materials.get(&placement.material).copied().unwrap_or(0);
+        instance.material = material;
         let bounds = match &placement.geometry.shape {
             Shape::Mesh(mesh) => {
                 // The mesh's index stands in for its root, which is known once the upper level is built.

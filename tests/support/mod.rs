@@ -1,6 +1,7 @@
 //! Scenes built in a few lines, and pictures of them from either renderer.
 
 pub mod function_table;
+pub mod kernel;
 pub mod oracle;
 pub mod placed;
 pub mod rays;
