@@ -30,7 +30,7 @@ fn noise_mix(t: f32, a: f32, b: f32) -> f32 {
 }
 
 /// Noise in about [-1, 1], 0 at lattice points. Defined for all finite coordinates: from 2²³ on, every float is a
-/// lattice point. NaN gives NaN.
+/// lattice point.
 pub fn perlin_noise(p: Vec3) -> f32 {
     let q = p.clamp(Vec3::splat(-16_777_216.0), Vec3::splat(16_777_216.0));
     let whole = q.floor();
