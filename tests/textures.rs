@@ -354,22 +354,6 @@ fn described(buffers: &SceneBuffers, index: u32) -> Material4 {
 }
 
 #[test]
-fn mists_and_glasses_come_first_and_have_numbers() {
-    let mut stage = Stage::new(8, 8);
-    stage.add(Shape::Sphere, DAffine3::IDENTITY, paint(0.1, 0.1, 0.1));
-    let mist = Material { density: Some(0.25), reflection: 1.0, ior: Some(1.5), ..paint(0.2, 0.2, 0.2) };
-    stage.add(Shape::Sphere, DAffine3::IDENTITY, Material { bump: Some(Bump::Noise { z: 0.0 }), ..mist });
-    stage.add(Shape::Sphere, DAffine3::IDENTITY, Material { ior: Some(1.5), ..paint(0.3, 0.3, 0.3) });
-    let buffers = flattened(&stage.finish());
-    let numbers: Vec<_> = buffers.materials.iter().map(|m| (m.medium, m.density, m.ior, m.flags)).collect();
-    assert_eq!(numbers, [(1, 0.25, 0.0, MATERIAL_MIST), (2, 0.0, 1.5, 0), (0, 0.0, 0.0, 0)]);
-    assert_eq!(buffers.materials[0].reflection, 0.0, "mist has no surface");
-    let found: Vec<_> = buffers.instances.iter().map(|i| buffers.materials[i.material as usize].diffuse.x).collect();
-    assert_eq!(found.len(), 3);
-    assert!([0.1, 0.2, 0.3].iter().all(|grey| found.contains(grey)), "{found:?}");
-}
-
-#[test]
 fn images_that_cannot_be_packed_are_refused() {
     let scene = |image: Image| {
         let mut stage = Stage::new(8, 8);
@@ -407,7 +391,7 @@ fn a_picture_of_a_side_is_the_image() {
             let mut worst = 0.0f64;
             for y in 0..edge {
                 for x in 0..edge {
-                    let [red, green, blue, _] = film.mean(x, y).map(f64::from);
+                    let [red, green, blue, _] = film.radiance(x, y).map(f64::from);
                     let expected = texel(&image, i64::from(x), i64::from(y));
                     worst = worst.max((DVec3::new(red, green, blue) - expected).abs().max_element());
                 }
@@ -438,7 +422,7 @@ fn a_checkered_floor_is_sharp_near_and_grey_far_away() {
             for x in 0..96 {
                 let d = pixel_direction(&scene, x, y, [0.5, 0.5]);
                 let distance = -1.0 / d.y;
-                let found = f64::from(film.mean(x, y)[0]);
+                let found = f64::from(film.radiance(x, y)[0]);
                 // Length of the pixel's footprint on the floor: its width over the sine of the angle.
                 let footprint = 2.0 * (PI / 6.0).tan() / 96.0 * distance / -d.y;
                 if footprint < 0.06 {

@@ -1,11 +1,10 @@
-//! Materials in use with the textures and bumps of their nodes, and the numbers of the media.
+//! Materials in use with the textures and bumps of their nodes, and the numbers of the refractive media.
 
 use super::atlas::Atlas;
 use super::walk::Placement;
 use crate::layout::{MATERIAL_MIST, MATERIAL_NOISE_BUMP, MATERIAL_TEXTURE_REPLACES, Material, NONE};
 use crate::scene::{self, Bump, Image, MaterialId, Scene, SceneGraph};
 use crate::{Error, Result};
-use glam::Vec3;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock};
 
@@ -35,9 +34,9 @@ struct Described<'a> {
 }
 
 impl Described<'_> {
-    /// Whether rays keep a record of being inside.
-    fn is_medium(&self) -> bool {
-        self.material.ior.is_some() || self.material.density.is_some()
+    /// Mist has no surface, and a refractive index no meaning in it.
+    fn is_refractive(&self) -> bool {
+        self.material.ior.is_some() && self.material.density.is_none()
     }
 }
 
@@ -64,9 +63,8 @@ pub struct MaterialsInUse {
     pub of_placement: Vec<u32>,
 }
 
-/// The materials of the placements, the media first (refractive ones and mists): the number of a medium is the index
-/// of its material plus 1, which is how the kernels find its refractive index or density. Adds the images of the
-/// materials to the atlas.
+/// The materials of the placements, the refractive ones first: the number of a medium is the index of its material
+/// plus 1, which is how the kernels find its refractive index. Adds the images of the materials to the atlas.
 ///
 /// # Errors
 /// [`Error::Scene`] for more media than [`MAX_MEDIA`], and what [`Atlas::add`] refuses.
@@ -86,11 +84,11 @@ pub fn materials_in_use<'a>(
     };
     let of_placement: Vec<usize> = placements.iter().map(&mut number).collect();
     let mut order: Vec<usize> = (0..found.len()).collect();
-    order.sort_by_key(|&number| !found[number].is_medium());
-    let media = found.iter().filter(|described| described.is_medium()).count();
+    order.sort_by_key(|&number| !found[number].is_refractive());
+    let media = found.iter().filter(|described| described.is_refractive()).count();
     if media > MAX_MEDIA as usize {
         return Err(Error::Scene(format!(
-            "the scene uses {media} refractive materials and mists; at most {MAX_MEDIA} are possible"
+            "the scene uses {media} refractive materials; at most {MAX_MEDIA} are possible"
         )));
     }
     // One glossy ray is none: the reflection is a mirror's.
@@ -114,19 +112,14 @@ fn pack<'a>(described: &Described<'a>, medium: u32, spread: f32, atlas: &mut Atl
         emission: material.emission,
         glossy: material.glossy * spread,
         ior: material.ior.unwrap_or(0.0),
-        density: 0.0,
+        density: material.density.unwrap_or(0.0),
         noise_z: 0.0,
-        flags: 0,
+        flags: if material.density.is_some() { MATERIAL_MIST } else { 0 },
         texture: NONE,
         bump: NONE,
-        medium: if described.is_medium() { medium } else { 0 },
-        pad: 0,
+        medium: if described.is_refractive() { medium } else { 0 },
+        mist_step: 0.0,
     };
-    if let Some(density) = material.density {
-        packed.density = density;
-        packed.flags |= MATERIAL_MIST;
-        (packed.specular, packed.reflection, packed.ior, packed.emission) = (Vec3::ZERO, 0.0, 0.0, Vec3::ZERO);
-    }
     if let Some(image) = described.texture {
         packed.texture = atlas.add(image)?;
         packed.flags |= MATERIAL_TEXTURE_REPLACES;

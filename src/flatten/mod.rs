@@ -10,6 +10,7 @@ mod instances;
 mod lights;
 mod materials;
 mod mesh;
+mod mist;
 mod walk;
 mod work;
 
@@ -69,11 +70,14 @@ pub struct Statistics {
 /// camera is degenerate.
 pub fn flatten(scene: &Scene) -> Result<SceneBuffers> {
     let start = Instant::now();
+    let scene = &*lights::with_visible_lights(scene);
     let placements = walk::placements(scene)?;
     let meshes = mesh::build_all(&placements)?;
     let mut atlas = atlas::Atlas::default();
-    let materials = materials::materials_in_use(scene, &placements, &mut atlas)?;
-    let built = instances::build(&scene.graph, &placements, &meshes, &materials.of_placement)?;
+    let materials::MaterialsInUse { packed: mut materials, of_placement } =
+        materials::materials_in_use(scene, &placements, &mut atlas)?;
+    let mists = mist::Mists::new(&mut materials, scene.camera.eye);
+    let built = instances::build(&scene.graph, &placements, &meshes, &of_placement, mists)?;
     let lights = lights::lights(scene)?;
     let mut frame = frame::frame(scene, built.plane_count, !built.nodes.is_empty())?;
     if let Some(image) = &scene.background.image {
@@ -91,7 +95,7 @@ pub fn flatten(scene: &Scene) -> Result<SceneBuffers> {
         nodes,
         instances: built.instances,
         triangles,
-        materials: materials.packed,
+        materials,
         lights,
         texels: atlas.into_texels(),
         sampling: scene.sampling,
