@@ -206,7 +206,7 @@ fn surroundings_agree_and_lie_where_they_should() {
         for (_, d) in rows.iter().filter(|(from, _)| *from == start) {
             let e = d.as_dvec3();
             let v = (0.5 - e.y.atan2(e.x.hypot(e.z)) / PI).clamp(0.5 / height, 1.0 - 0.5 / height);
-            let expected = bilinear(image, DVec2::new(0.5 + e.x.atan2(-e.z) / (2.0 * PI), v));
+            let expected = bilinear(image, DVec2::new(0.5 + e.x.atan2(0.0 - e.z) / (2.0 * PI), v));
             let error = (environment_lookup(&scene, start, *d).as_dvec3() - expected).abs().max_element();
             assert!(error < 64.0 / 512.0 + 1e-4, "{} towards {d}: off by {error}", image.name);
         }
@@ -256,12 +256,12 @@ fn fine_squares_far_away_are_grey() {
     let scene = bindings(&buffers);
     for (&start, cells) in starts.iter().zip([64.0, 64.0, 50.0]) {
         let sharp = contrast(&scene, start, cells, 0.0);
-        let near: Vec<f64> = [0.25, 1.0, 2.0].map(|squares| contrast(&scene, start, cells, squares)).to_vec();
+        let near: Vec<f64> = [0.25, 1.0, 1.5, 2.0].map(|squares| contrast(&scene, start, cells, squares)).to_vec();
         let far: Vec<f64> = [3.0, 5.0, 10.0, 64.0].map(|squares| contrast(&scene, start, cells, squares)).to_vec();
-        println!("deviation: sharp {sharp:.3}, {near:.3?} at 1/4, 1 and 2 squares, {far:.3?} at 3, 5, 10 and 64");
-        assert!(sharp > 0.25, "{sharp}: the board has no contrast to lose");
+        println!("deviation: sharp {sharp:.3}, {near:.3?} at 1/4, 1, 3/2 and 2 squares, {far:.3?} at 3, 5, 10 and 64");
+        assert!(sharp > 0.15, "{sharp}: the board has no contrast to lose");
         assert!(far.iter().all(|&deviation| deviation < 0.06), "{far:?}");
-        assert!(near[2] < 0.6 * sharp, "{near:?}");
+        assert!(near[3] < 0.6 * sharp, "{near:?}");
     }
 }
 
@@ -377,34 +377,40 @@ fn the_surroundings_are_in_the_buffer() {
     assert!(buffers.features.background_image);
 }
 
-/// A picture of the side of a box that fills it: pixel for pixel the image, upright and not mirrored.
+/// A picture of the side of a box that fills it is the image, upright and not mirrored. Texels are five pixels wide, so
+/// that the filter has nothing to do; the middle pixel of each shows its very colour.
 #[test]
 fn a_picture_of_a_side_is_the_image() {
-    let edge = 32;
-    for image in [noisy(edge, edge), checkerboard(8, 4)] {
+    let edge = 40;
+    for image in [noisy(8, 8), checkerboard(4, 2)] {
         for device in &BOTH {
             let mut stage = Stage::new(edge, edge);
             stage.scene.ambient = Vec3::ONE;
             let half = (PI / 6.0).tan();
-            let (low, high) = (DVec3::new(-half, -half, -2.0), DVec3::new(half, half, -1.0));
-            let film = stage_with(stage, |stage| drop(stage.add_box(low, high, textured(&image)))).film(device);
-            let mut worst = 0.0f64;
-            for y in 0..edge {
-                for x in 0..edge {
-                    let [red, green, blue, _] = film.radiance(x, y).map(f64::from);
-                    let expected = texel(&image, i64::from(x), i64::from(y));
-                    worst = worst.max((DVec3::new(red, green, blue) - expected).abs().max_element());
-                }
-            }
-            println!("{} on {device:?}: off by {worst:.1e}", image.name);
-            assert!(worst < 1e-4, "{} on {device:?}: off by {worst}", image.name);
+            stage.add_box(DVec3::new(-half, -half, -2.0), DVec3::new(half, half, -1.0), textured(&image));
+            let film = stage.film(device);
+            let found = |x, y| {
+                let [red, green, blue, _] = film.radiance(x, y).map(f64::from);
+                DVec3::new(red, green, blue)
+            };
+            let off = |mirrored: bool| {
+                let pixels = (0..edge * edge).map(|i| (i % edge, i / edge));
+                let errors = pixels.map(|(x, y)| {
+                    let u = (f64::from(x) + 0.5) / f64::from(edge);
+                    let uv = DVec2::new(if mirrored { 1.0 - u } else { u }, (f64::from(y) + 0.5) / f64::from(edge));
+                    (found(x, y) - bilinear(&image, uv)).abs().max_element()
+                });
+                errors.fold(0.0f64, f64::max)
+            };
+            let middles = (0..64).map(|i| (i % 8, i / 8)).map(|(x, y)| {
+                (found(5 * x + 2, 5 * y + 2) - texel(&image, i64::from(x), i64::from(y))).abs().max_element()
+            });
+            let (worst, at_middles) = (off(false), middles.fold(0.0f64, f64::max));
+            println!("{} on {device:?}: off by {worst:.1e}, at the middles by {at_middles:.1e}", image.name);
+            assert!(worst < 1e-4 && at_middles < 1e-5, "{} on {device:?}: {worst} {at_middles}", image.name);
+            assert!(off(true) > 0.1, "a mirrored image passed");
         }
     }
-}
-
-fn stage_with(mut stage: Stage, change: impl FnOnce(&mut Stage)) -> Stage {
-    change(&mut stage);
-    stage
 }
 
 /// A floor of large squares seen from above against the ray's point in double precision, and fine squares towards
@@ -438,7 +444,7 @@ fn a_checkered_floor_is_sharp_near_and_grey_far_away() {
         let mean = far.iter().sum::<f64>() / far.len() as f64;
         let deviation = (far.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / far.len() as f64).sqrt();
         println!("{device:?}: {near} pixels near; {} far, mean {mean:.4}, deviation {deviation:.4}", far.len());
-        assert!(near > 500 && far.len() > 200, "{near} {}", far.len());
+        assert!(near > 300 && far.len() > 200, "{near} {}", far.len());
         assert!((mean - 0.5).abs() < 0.01 && deviation < 0.02, "{mean} {deviation}");
     }
 }
