@@ -3,6 +3,7 @@
 mod support;
 
 mod analytic;
+mod bump;
 mod cli;
 mod compare;
 mod devices;
@@ -15,6 +16,7 @@ mod intersections;
 mod layout;
 mod loop_cap;
 mod math_tables;
+mod noise;
 mod parity;
 mod roots;
 mod script;
