@@ -33,6 +33,7 @@ pub const PARTS: &[Part<'static>] = parts![
     "math/offset.wgsl"
     "math/noise.wgsl"
     "geometry/hit.wgsl"
+    "geometry/revolution.wgsl"
     "geometry/sphere.wgsl"
     "geometry/cube.wgsl"
     "geometry/cylinder.wgsl"

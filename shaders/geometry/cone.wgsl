@@ -65,3 +65,13 @@ fn cone_normal(point: vec3<f32>, face: u32) -> vec3<f32> {
     let side = vec3<f32>(point.x * scale, select(1.0, 0.70710678, rho > TINY), point.z * scale);
     return select(vec3<f32>(0.0, -1.0, 0.0), side, face == CONE_SIDE);
 }
+
+// Around the axis to the right and from the apex downwards; the cap by x and z.
+fn cone_parameterise(point: vec3<f32>, face: u32) -> Parameterisation {
+    if face != CONE_SIDE {
+        return cap_parameterise(point, -1.0);
+    }
+    let around = revolution(point);
+    let dpdv = vec3<f32>(around.radial.x, -1.0, around.radial.z);
+    return Parameterisation(vec2<f32>(around.u, -point.y), around.dpdu, dpdv);
+}

@@ -28,3 +28,20 @@ fn cube_normal(point: vec3<f32>, face: u32) -> vec3<f32> {
     let outward = f32(face & 1u) * 2.0 - 1.0;
     return select(vec3<f32>(0.0), vec3<f32>(outward), vec3<u32>(0u, 1u, 2u) == vec3<u32>(face >> 1u));
 }
+
+// Each face shows the whole image, upright and not mirrored as seen from outside: with +y up on the four sides, -z
+// up on the top, and +z up on the bottom.
+fn cube_parameterise(point: vec3<f32>, face: u32) -> Parameterisation {
+    let outward = f32(face & 1u) * 2.0 - 1.0;
+    let axis = face >> 1u;
+    let from_middle = point - vec3<f32>(0.5);
+    let right = select(
+        vec3<f32>(select(outward, 1.0, axis == 1u), 0.0, 0.0),
+        vec3<f32>(0.0, 0.0, -outward),
+        axis == 0u,
+    );
+    let down = select(vec3<f32>(0.0, -1.0, 0.0), vec3<f32>(0.0, 0.0, outward), axis == 1u);
+    let u = (from_middle.x * right.x + from_middle.z * right.z) + 0.5;
+    let v = (from_middle.y * down.y + from_middle.z * down.z) + 0.5;
+    return Parameterisation(vec2<f32>(u, v), right, down);
+}

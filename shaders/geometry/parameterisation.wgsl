@@ -1,1 +1,46 @@
-// Texture coordinates and tangents of the surface at a hit.
+// Texture coordinates and tangents of the surface at a hit. v = 0 is the image's top row, so that in a space that is
+// not mirrored dpdu x dpdv points into the shape.
+
+// In world space; the tangents are not of unit length, but the true derivatives of the point.
+fn parameterise_at(hit: Hit, surface: Surface) -> Parameterisation {
+    let point = transform_point(instances[hit.instance].object_from_world, surface.point);
+    var result = Parameterisation(vec2<f32>(0.0), vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 0.0, 1.0));
+    switch instances[hit.instance].shape {
+        case SHAPE_SPHERE: {
+            if HAS_SPHERE { result = sphere_parameterise(point, hit.primitive); }
+        }
+        case SHAPE_CUBE: {
+            if HAS_CUBE { result = cube_parameterise(point, hit.primitive); }
+        }
+        case SHAPE_CYLINDER: {
+            if HAS_CYLINDER { result = cylinder_parameterise(point, hit.primitive); }
+        }
+        case SHAPE_CONE: {
+            if HAS_CONE { result = cone_parameterise(point, hit.primitive); }
+        }
+        case SHAPE_TORUS: {
+            if HAS_TORUS {
+                result = torus_parameterise(point, hit.primitive, instances[hit.instance].parameters.xy);
+            }
+        }
+        case SHAPE_PLANE: {
+            if HAS_PLANE { result = plane_parameterise(point, hit.primitive); }
+        }
+        case SHAPE_MESH: {
+            if HAS_MESH {
+                let triangle = triangles[hit.primitive];
+                result = triangle_parameterise(
+                    triangle.p0, triangle.p1, triangle.p2, triangle.uv0, triangle.uv1, triangle.uv2, hit.b1, hit.b2,
+                    instances[hit.instance].parameters,
+                );
+            }
+        }
+        default: {}
+    }
+    let world_from_object = instances[hit.instance].world_from_object;
+    return Parameterisation(
+        result.uv,
+        transform_vector(world_from_object, result.dpdu),
+        transform_vector(world_from_object, result.dpdv),
+    );
+}

@@ -13,3 +13,8 @@ fn plane_project(point: vec3<f32>, face: u32) -> vec3<f32> {
 fn plane_normal(point: vec3<f32>, face: u32) -> vec3<f32> {
     return vec3<f32>(0.0, 1.0, 0.0);
 }
+
+// One image a unit square, upright as seen from above with -z up.
+fn plane_parameterise(point: vec3<f32>, face: u32) -> Parameterisation {
+    return Parameterisation(point.xz, vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 0.0, 1.0));
+}

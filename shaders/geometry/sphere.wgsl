@@ -25,3 +25,13 @@ fn sphere_project(point: vec3<f32>, face: u32) -> vec3<f32> {
 fn sphere_normal(point: vec3<f32>, face: u32) -> vec3<f32> {
     return point / sqrt(point.x * point.x + point.y * point.y + point.z * point.z);
 }
+
+// Longitude to the right and latitude downwards; the seam is at -x.
+fn sphere_parameterise(point: vec3<f32>, face: u32) -> Parameterisation {
+    let around = revolution(point);
+    // The latitude is asin(y), in the form that keeps its digits near the poles. 1/pi and pi.
+    let v = 0.5 - atan2_poly(point.y, around.rho) * 0.31830987;
+    let rise = point.y * 3.1415927;
+    let dpdv = vec3<f32>(around.radial.x * rise, around.rho * -3.1415927, around.radial.z * rise);
+    return Parameterisation(vec2<f32>(around.u, v), around.dpdu, dpdv);
+}

@@ -123,3 +123,13 @@ fn torus_normal(point: vec3<f32>, face: u32, radii: vec2<f32>) -> vec3<f32> {
     let outward = e * scale / rho;
     return vec3<f32>(point.x * outward, point.y * scale, point.z * outward);
 }
+
+// Around the axis to the right and around the tube downwards from its inner side, where the seam of v is.
+fn torus_parameterise(point: vec3<f32>, face: u32, radii: vec2<f32>) -> Parameterisation {
+    let around = revolution(point);
+    let e = around.rho - radii.x;
+    let v = 0.5 - atan2_poly(point.y, e) * 0.15915494;
+    let rise = point.y * 6.2831855;
+    let dpdv = vec3<f32>(around.radial.x * rise, e * -6.2831855, around.radial.z * rise);
+    return Parameterisation(vec2<f32>(around.u, v), around.dpdu, dpdv);
+}

@@ -89,3 +89,53 @@ fn triangle_shading_normal(n0: u32, n1: u32, n2: u32, b1: f32, b2: f32) -> vec3<
     // Opposite normals cancel: then the first corner's stands.
     return select(first, n / max(length, TINY), length > 1.0e-6);
 }
+
+// Texture coordinates of a corner: two 16-bit unorms within the rectangle (least corner, extent). The image's rows
+// count downwards, OBJ's v upwards.
+fn decode_uv(packed: u32, rectangle: vec4<f32>) -> vec2<f32> {
+    let share = vec2<f32>(f32(packed & 0xffffu), f32(packed >> 16u)) / 65535.0;
+    return vec2<f32>(share.x * rectangle.z + rectangle.x, 1.0 - (share.y * rectangle.w + rectangle.y));
+}
+
+// The direction in the plane with normal n that moves as `along` does across `axis`.
+fn tangent_over(along: vec3<f32>, axis: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
+    let slope = (n.x * along.x + n.y * along.y + n.z * along.z) / (n.x * axis.x + n.y * axis.y + n.z * axis.z);
+    return along - axis * slope;
+}
+
+// Coordinates of the mesh's own where it has any (a rectangle with an extent), b1 and b2 weighing the second and third
+// corner. Otherwise one image a unit square, projected along the largest axis of the normal and upright as seen from
+// outside, as on the faces of the cube; those are also the tangents where a triangle has no area in the image.
+fn triangle_parameterise(
+    p0: vec3<f32>, p1: vec3<f32>, p2: vec3<f32>, uv0: u32, uv1: u32, uv2: u32, b1: f32, b2: f32, rectangle: vec4<f32>,
+) -> Parameterisation {
+    let own = rectangle.z != 0.0 || rectangle.w != 0.0;
+    let first = decode_uv(uv0, rectangle);
+    let d1 = decode_uv(uv1, rectangle) - first;
+    let d2 = decode_uv(uv2, rectangle) - first;
+    let determinant = d1.x * d2.y - d1.y * d2.x;
+    let has_area = own && abs(determinant) > TINY;
+    let inverse = 1.0 / select(1.0, determinant, has_area);
+    let e1 = p1 - p0;
+    let e2 = p2 - p0;
+    let own_uv = first + d1 * b1 + d2 * b2;
+    if has_area {
+        let dpdu = (e1 * d2.y - e2 * d1.y) * inverse;
+        let dpdv = (e2 * d1.x - e1 * d2.x) * inverse;
+        return Parameterisation(own_uv, dpdu, dpdv);
+    }
+
+    let n = triangle_geometric_normal(p0, p1, p2);
+    let size = abs(n);
+    let over_x = size.x >= size.y && size.x >= size.z;
+    let over_y = !over_x && size.y >= size.z;
+    let axis = vec3<f32>(select(0.0, 1.0, over_x), select(0.0, 1.0, over_y), select(1.0, 0.0, over_x || over_y));
+    let outward = select(1.0, -1.0, n.x * axis.x + n.y * axis.y + n.z * axis.z < 0.0);
+    let right = select(vec3<f32>(select(outward, 1.0, over_y), 0.0, 0.0), vec3<f32>(0.0, 0.0, -outward), over_x);
+    let down = select(vec3<f32>(0.0, -1.0, 0.0), vec3<f32>(0.0, 0.0, outward), over_y);
+    let point = p0 * (1.0 - b1 - b2) + p1 * b1 + p2 * b2;
+    let across = vec2<f32>(point.x * right.x + point.z * right.z, point.y * down.y + point.z * down.z);
+    return Parameterisation(
+        select(across, own_uv, own), tangent_over(right, axis, n), tangent_over(down, axis, n),
+    );
+}

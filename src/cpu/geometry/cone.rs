@@ -1,8 +1,9 @@
 //! The closed cone x² + z² ≤ y² for y in [-1, 0]; twin of `shaders/geometry/cone.wgsl`, where the method is explained.
 
-use super::hit::{MISS, ShapeHit};
+use super::hit::{MISS, Parameterisation, ShapeHit};
+use super::revolution::{cap_parameterise, revolution};
 use crate::cpu::math::roots::{FAR, TINY, quadratic_roots, safe_reciprocal};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_SQRT_2;
 
 pub const CONE_SIDE: u32 = 0;
@@ -74,4 +75,15 @@ pub fn cone_normal(point: Vec3, face: u32) -> Vec3 {
     let rho = (point.x * point.x + point.z * point.z).sqrt();
     let scale = FRAC_1_SQRT_2 / rho.max(TINY);
     Vec3::new(point.x * scale, if rho > TINY { FRAC_1_SQRT_2 } else { 1.0 }, point.z * scale)
+}
+
+/// Around the axis to the right and from the apex downwards; the cap by x and z.
+#[inline]
+pub fn cone_parameterise(point: Vec3, face: u32) -> Parameterisation {
+    if face != CONE_SIDE {
+        return cap_parameterise(point, -1.0);
+    }
+    let around = revolution(point);
+    let dpdv = Vec3::new(around.radial.x, -1.0, around.radial.z);
+    Parameterisation { uv: Vec2::new(around.u, -point.y), dpdu: around.dpdu, dpdv }
 }

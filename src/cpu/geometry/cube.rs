@@ -1,8 +1,8 @@
 //! The unit cube [0, 1]³; twin of `shaders/geometry/cube.wgsl`. Faces: 2 · axis, and 1 more for the face at 1.
 
-use super::hit::{MISS, ShapeHit};
+use super::hit::{MISS, Parameterisation, ShapeHit};
 use crate::cpu::math::roots::safe_reciprocal;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Nearest hit in (0, t_max) of a ray in object space, whose direction need not be a unit vector.
 #[inline]
@@ -52,4 +52,20 @@ pub fn cube_normal(_point: Vec3, face: u32) -> Vec3 {
         1 => Vec3::new(0.0, outward, 0.0),
         _ => Vec3::new(0.0, 0.0, outward),
     }
+}
+
+/// Each face shows the whole image, upright and not mirrored as seen from outside: with +y up on the four sides, -z up
+/// on the top, and +z up on the bottom.
+#[inline]
+pub fn cube_parameterise(point: Vec3, face: u32) -> Parameterisation {
+    let outward = (face & 1) as f32 * 2.0 - 1.0;
+    let from_middle = point - Vec3::splat(0.5);
+    let (right, down) = match face >> 1 {
+        0 => (Vec3::new(0.0, 0.0, -outward), Vec3::NEG_Y),
+        1 => (Vec3::X, Vec3::new(0.0, 0.0, outward)),
+        _ => (Vec3::new(outward, 0.0, 0.0), Vec3::NEG_Y),
+    };
+    let u = (from_middle.x * right.x + from_middle.z * right.z) + 0.5;
+    let v = (from_middle.y * down.y + from_middle.z * down.z) + 0.5;
+    Parameterisation { uv: Vec2::new(u, v), dpdu: right, dpdv: down }
 }

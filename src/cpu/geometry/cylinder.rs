@@ -1,9 +1,10 @@
 //! The closed cylinder x² + z² ≤ 1 for y in [-1, 1]; twin of `shaders/geometry/cylinder.wgsl`. It is convex: a ray is
 //! inside both the infinite cylinder and the slab between the caps for one interval.
 
-use super::hit::{MISS, ShapeHit};
+use super::hit::{MISS, Parameterisation, ShapeHit};
+use super::revolution::{cap_parameterise, revolution};
 use crate::cpu::math::roots::{FAR, quadratic_roots, safe_reciprocal};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 pub const CYLINDER_SIDE: u32 = 0;
 pub const CYLINDER_TOP: u32 = 1;
@@ -66,4 +67,15 @@ pub fn cylinder_normal(point: Vec3, face: u32) -> Vec3 {
         CYLINDER_TOP => Vec3::Y,
         _ => Vec3::NEG_Y,
     }
+}
+
+/// Around the axis to the right and along it downwards; the caps by x and z.
+#[inline]
+pub fn cylinder_parameterise(point: Vec3, face: u32) -> Parameterisation {
+    if face != CYLINDER_SIDE {
+        return cap_parameterise(point, if face == CYLINDER_TOP { 1.0 } else { -1.0 });
+    }
+    let around = revolution(point);
+    let v = 0.5 - point.y * 0.5;
+    Parameterisation { uv: Vec2::new(around.u, v), dpdu: around.dpdu, dpdv: Vec3::new(0.0, -2.0, 0.0) }
 }

@@ -8,6 +8,7 @@ pub mod hit;
 pub mod instance;
 pub mod parameterisation;
 pub mod plane;
+pub mod revolution;
 pub mod sphere;
 pub mod torus;
 pub mod triangle;

@@ -1,8 +1,8 @@
 //! The infinite plane y = 0, with normal +y on both sides; twin of `shaders/geometry/plane.wgsl`.
 
-use super::hit::{MISS, ShapeHit};
+use super::hit::{MISS, Parameterisation, ShapeHit};
 use crate::cpu::math::roots::safe_reciprocal;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Hit in (0, t_max) of a ray in object space, whose direction need not be a unit vector.
 #[inline]
@@ -22,4 +22,10 @@ pub fn plane_project(point: Vec3, _face: u32) -> Vec3 {
 #[inline]
 pub fn plane_normal(_point: Vec3, _face: u32) -> Vec3 {
     Vec3::Y
+}
+
+/// One image a unit square, upright as seen from above with -z up.
+#[inline]
+pub fn plane_parameterise(point: Vec3, _face: u32) -> Parameterisation {
+    Parameterisation { uv: Vec2::new(point.x, point.z), dpdu: Vec3::X, dpdv: Vec3::Z }
 }

@@ -1,8 +1,11 @@
 //! The unit sphere about the origin; twin of `shaders/geometry/sphere.wgsl`.
 
-use super::hit::{MISS, ShapeHit};
+use super::hit::{MISS, Parameterisation, ShapeHit};
+use super::revolution::revolution;
+use crate::cpu::math::elementary::atan2_poly;
 use crate::cpu::math::roots::quadratic_roots;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Nearest hit in (0, t_max) of a ray in object space, whose direction need not be a unit vector.
 #[inline]
@@ -34,4 +37,15 @@ pub fn sphere_project(point: Vec3, face: u32) -> Vec3 {
 #[inline]
 pub fn sphere_normal(point: Vec3, _face: u32) -> Vec3 {
     point / (point.x * point.x + point.y * point.y + point.z * point.z).sqrt()
+}
+
+/// Longitude to the right and latitude downwards; the seam is at -x.
+#[inline]
+pub fn sphere_parameterise(point: Vec3, _face: u32) -> Parameterisation {
+    let around = revolution(point);
+    // The latitude is asin(y), in the form that keeps its digits near the poles.
+    let v = 0.5 - atan2_poly(point.y, around.rho) * FRAC_1_PI;
+    let rise = point.y * PI;
+    let dpdv = Vec3::new(around.radial.x * rise, around.rho * -PI, around.radial.z * rise);
+    Parameterisation { uv: Vec2::new(around.u, v), dpdu: around.dpdu, dpdv }
 }

@@ -1,8 +1,11 @@
 //! The torus about the y axis; twin of `shaders/geometry/torus.wgsl`, where the method is explained.
 
-use super::hit::{MISS, ShapeHit};
+use super::hit::{MISS, Parameterisation, ShapeHit};
+use super::revolution::revolution;
+use crate::cpu::math::elementary::atan2_poly;
 use crate::cpu::math::roots::{FAR, TINY, cube_root, safe_reciprocal};
 use glam::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, TAU};
 
 /// Newton steps for both starting points together.
 pub const TORUS_STEPS: u32 = 32;
@@ -133,4 +136,15 @@ pub fn torus_normal(point: Vec3, _face: u32, radii: Vec2) -> Vec3 {
     let scale = 1.0 / (e * e + point.y * point.y).sqrt().max(TINY);
     let outward = e * scale / rho;
     Vec3::new(point.x * outward, point.y * scale, point.z * outward)
+}
+
+/// Around the axis to the right and around the tube downwards from its inner side, where the seam of v is.
+#[inline]
+pub fn torus_parameterise(point: Vec3, _face: u32, radii: Vec2) -> Parameterisation {
+    let around = revolution(point);
+    let e = around.rho - radii.x;
+    let v = 0.5 - atan2_poly(point.y, e) * (0.5 * FRAC_1_PI);
+    let rise = point.y * TAU;
+    let dpdv = Vec3::new(around.radial.x * rise, e * -TAU, around.radial.z * rise);
+    Parameterisation { uv: Vec2::new(around.u, v), dpdu: around.dpdu, dpdv }
 }

@@ -1,9 +1,9 @@
 //! Triangles: the watertight test of Woop, Benthin and Wald (JCGT 2013), normals, and the packing of normals; twin of
 //! `shaders/geometry/triangle.wgsl`, where the method is explained.
 
-use super::hit::MISS;
+use super::hit::{MISS, Parameterisation};
 use crate::cpu::math::roots::{TINY, safe_reciprocal};
-use glam::Vec3;
+use glam::{Vec2, Vec3, Vec4};
 
 /// What a ray contributes to the tests: its origin, and the shear that turns its direction into `axis`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,4 +108,72 @@ pub fn triangle_shading_normal(n0: u32, n1: u32, n2: u32, b1: f32, b2: f32) -> V
     let length = (n.x * n.x + n.y * n.y + n.z * n.z).sqrt();
     // Opposite normals cancel: then the first corner's stands.
     if length > 1.0e-6 { n / length.max(TINY) } else { first }
+}
+
+/// Texture coordinates of a corner: two 16-bit unorms within the rectangle (least corner, extent). The image's rows
+/// count downwards, OBJ's v upwards.
+#[inline]
+fn decode_uv(packed: u32, rectangle: Vec4) -> Vec2 {
+    let share = Vec2::new((packed & 0xffff) as f32, (packed >> 16) as f32) / 65535.0;
+    Vec2::new(share.x * rectangle.z + rectangle.x, 1.0 - (share.y * rectangle.w + rectangle.y))
+}
+
+/// The direction in the plane with normal n that moves as `along` does across `axis`.
+#[inline]
+fn tangent_over(along: Vec3, axis: Vec3, n: Vec3) -> Vec3 {
+    let slope = (n.x * along.x + n.y * along.y + n.z * along.z) / (n.x * axis.x + n.y * axis.y + n.z * axis.z);
+    along - axis * slope
+}
+
+/// Coordinates of the mesh's own where it has any (a rectangle with an extent), b1 and b2 weighing the second and third
+/// corner. Otherwise one image a unit square, projected along the largest axis of the normal and upright as seen from
+/// outside, as on the faces of the cube; those are also the tangents where a triangle has no area in the image.
+///
+/// `uvs` are the corners' packed coordinates; `rectangle` is (least corner, extent).
+pub fn triangle_parameterise(
+    [p0, p1, p2]: [Vec3; 3],
+    uvs: [u32; 3],
+    b1: f32,
+    b2: f32,
+    rectangle: Vec4,
+) -> Parameterisation {
+    let own = rectangle.z != 0.0 || rectangle.w != 0.0;
+    let [first, second, third] = uvs.map(|uv| decode_uv(uv, rectangle));
+    let d1 = second - first;
+    let d2 = third - first;
+    let determinant = d1.x * d2.y - d1.y * d2.x;
+    let has_area = own && determinant.abs() > TINY;
+    let inverse = 1.0 / if has_area { determinant } else { 1.0 };
+    let e1 = p1 - p0;
+    let e2 = p2 - p0;
+    let own_uv = first + d1 * b1 + d2 * b2;
+    if has_area {
+        let dpdu = (e1 * d2.y - e2 * d1.y) * inverse;
+        let dpdv = (e2 * d1.x - e1 * d2.x) * inverse;
+        return Parameterisation { uv: own_uv, dpdu, dpdv };
+    }
+
+    let n = triangle_geometric_normal(p0, p1, p2);
+    let size = n.abs();
+    let over_x = size.x >= size.y && size.x >= size.z;
+    let over_y = !over_x && size.y >= size.z;
+    let (axis, along) = match (over_x, over_y) {
+        (true, _) => (Vec3::X, n.x),
+        (_, true) => (Vec3::Y, n.y),
+        _ => (Vec3::Z, n.z),
+    };
+    let outward = if along < 0.0 { -1.0 } else { 1.0 };
+    let right = match (over_x, over_y) {
+        (true, _) => Vec3::new(0.0, 0.0, -outward),
+        (_, true) => Vec3::X,
+        _ => Vec3::new(outward, 0.0, 0.0),
+    };
+    let down = if over_y { Vec3::new(0.0, 0.0, outward) } else { Vec3::NEG_Y };
+    let point = p0 * (1.0 - b1 - b2) + p1 * b1 + p2 * b2;
+    let across = Vec2::new(point.x * right.x + point.z * right.z, point.y * down.y + point.z * down.z);
+    Parameterisation {
+        uv: if own { own_uv } else { across },
+        dpdu: tangent_over(right, axis, n),
+        dpdv: tangent_over(down, axis, n),
+    }
 }

@@ -1,6 +1,7 @@
 //! Elementary functions of our own, since those of drivers differ; twin of `shaders/math/elementary.wgsl`.
 
 use glam::Vec3;
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// The vector's direction. `normalize` may multiply by a reciprocal root instead, which is another number.
 pub fn unit_vector(v: Vec3) -> Vec3 {
@@ -45,6 +46,38 @@ pub fn power(base: f32, exponent: f32) -> f32 {
     let safe = base.max(f32::MIN_POSITIVE);
     let result = exp2_poly(exponent * log2_poly(safe));
     if base < f32::MIN_POSITIVE { if exponent == 0.0 { 1.0 } else { 0.0 } } else { result }
+}
+
+/// The angle from the x axis to (x, y), in [-π, π]; 0 for (0, 0). The smaller component over the larger is brought
+/// below tan(π/8) by atan(t) = π/4 + atan((t - 1) / (t + 1)); the polynomial there is a minimax fit of atan(t) / t in
+/// t², off by 2e-8 of itself. Absolute error below 3e-7.
+pub fn atan2_poly(y: f32, x: f32) -> f32 {
+    let low = x.abs().min(y.abs());
+    let high = x.abs().max(y.abs());
+    let ratio = low / high.max(f32::MIN_POSITIVE);
+    let steep = ratio > 0.414_213_57;
+    let t = if steep { (ratio - 1.0) / (ratio + 1.0) } else { ratio };
+    let q = t * t;
+    let mut series = q * 0.080_600_657 - 0.138_797_8;
+    series = series * q + 0.199_779_2;
+    series = series * q - 0.333_329_56;
+    let arc = t + t * (series * q);
+    let eighth = if steep { arc + FRAC_PI_4 } else { arc };
+    let quarter = if y.abs() > x.abs() { FRAC_PI_2 - eighth } else { eighth };
+    let half = if x < 0.0 { PI - quarter } else { quarter };
+    if y < 0.0 { -half } else { half }
+}
+
+/// Arc sine of x, which counts as 1 or -1 beyond them; absolute error below 4e-7.
+pub fn asin_poly(x: f32) -> f32 {
+    let sine = x.clamp(-1.0, 1.0);
+    atan2_poly(sine, ((1.0 - sine) * (1.0 + sine)).sqrt())
+}
+
+/// Arc cosine of x, which counts as 1 or -1 beyond them; absolute error below 4e-7.
+pub fn acos_poly(x: f32) -> f32 {
+    let cosine = x.clamp(-1.0, 1.0);
+    atan2_poly(((1.0 - cosine) * (1.0 + cosine)).sqrt(), cosine)
 }
 
 #[cfg(test)]
