@@ -9,6 +9,7 @@ const DIMENSION_CHOICE: u32 = 4u;
 const DIMENSION_LIGHT_CHOICE: u32 = 5u;
 const BRANCH_REFLECTED: u32 = 6u;
 const BRANCH_REFRACTED: u32 = 7u;
+const DIMENSION_MIST: u32 = 8u;
 // Light i has the dimension DIMENSION_LIGHT + i.
 const DIMENSION_LIGHT: u32 = 16u;
 
@@ -18,11 +19,19 @@ const T_INFINITY: f32 = 3.0e38;
 
 struct Ray {
     origin: vec3<f32>,
+    // Where it is as to mist: the point of the surface that it leaves, without the offset, which might skip a boundary.
+    start: vec3<f32>,
     // Unit.
     direction: vec3<f32>,
     // Share of this ray's radiance in the camera ray's.
     weight: f32,
+    // The refractive media and the mists that it is in.
     media: vec2<u32>,
+    mists: vec2<u32>,
+    // Width of what it stands for at its origin, world units, and how that grows a world unit: a ray cone
+    // (Akenine-Möller et al., Ray Tracing Gems ch. 20).
+    cone_width: f32,
+    cone_spread: f32,
     // Number among the samples that share `key`, and the key of its random decisions.
     index: u32,
     key: u32,
@@ -39,15 +48,6 @@ fn push_ray(ray: Ray) {
     }
     ray_stack[ray_stack_size] = ray;
     ray_stack_size++;
-}
-
-// Radiance of a ray that leaves the scene: a gradient over the height of its direction.
-fn background(direction: vec3<f32>) -> vec3<f32> {
-    return mix_colour(frame.background_bottom, frame.background_top, 0.5 + 0.5 * direction.y);
-}
-
-fn mix_colour(a: vec3<f32>, b: vec3<f32>, t: f32) -> vec3<f32> {
-    return a + (b - a) * t;
 }
 
 // The shares of reflected and refracted light at a surface, and where the refracted ray goes.
@@ -102,8 +102,8 @@ fn reflected_direction(surface: Surface, material: Material, ray: Ray, index: u3
     return unit_vector(keep_above(r, surface.geometric_normal));
 }
 
-// Pushes the rays that leave a surface.
-fn spawn_rays(surface: Surface, material: Material, ray: Ray) {
+// Pushes the rays that leave a surface, on which the ray's cone is cone_width wide.
+fn spawn_rays(surface: Surface, material: Material, ray: Ray, cone_width: f32) {
     let scattering = scatter(surface, material, ray);
     var reflected = scattering.reflected;
     var refracted = scattering.refracted;
@@ -117,9 +117,19 @@ fn spawn_rays(surface: Surface, material: Material, ray: Ray) {
     }
     if (HAS_REFRACTION && refracted > 0.0) {
         tally.rays[RAY_REFRACTED] += 1u;
-        let origin = offset_ray_origin(surface.point, -surface.geometric_normal);
-        let key = hash_combine(ray.key, BRANCH_REFRACTED);
-        push_ray(Ray(origin, scattering.direction, ray.weight * refracted, scattering.media, ray.index, key, ray.depth + 1u));
+        push_ray(Ray(
+            offset_ray_origin(surface.point, -surface.geometric_normal),
+            surface.point,
+            scattering.direction,
+            ray.weight * refracted,
+            scattering.media,
+            ray.mists,
+            cone_width,
+            ray.cone_spread,
+            ray.index,
+            hash_combine(ray.key, BRANCH_REFRACTED),
+            ray.depth + 1u,
+        ));
     }
     if (HAS_REFLECTION && reflected > 0.0) {
         let origin = offset_ray_origin(surface.point, surface.geometric_normal);
@@ -131,34 +141,83 @@ fn spawn_rays(surface: Surface, material: Material, ray: Ray) {
             first = (ray.index * frame.pass_count + dispatch.pass_index) * count;
         }
         let weight = ray.weight * reflected / f32(count);
+        // A glossy ray stands for its part of the square, of which the samples of a pixel are at least a few.
+        let spread = ray.cone_spread + 0.5 * material.glossy;
         for (var i = 0u; i < count; i++) {
             tally.rays[RAY_REFLECTED] += 1u;
-            let direction = reflected_direction(surface, material, ray, first + i);
-            push_ray(Ray(origin, direction, weight, ray.media, first + i, key, ray.depth + 1u));
+            push_ray(Ray(
+                origin,
+                surface.point,
+                reflected_direction(surface, material, ray, first + i),
+                weight,
+                ray.media,
+                ray.mists,
+                cone_width,
+                spread,
+                first + i,
+                key,
+                ray.depth + 1u,
+            ));
         }
     }
 }
 
+// The way of a ray through mist, leg by leg from boundary to boundary, once it is known which surface it would meet.
+// Free flights have no memory, so that each leg samples one of its own. World units along the ray.
+struct Flight {
+    // Still on its way.
+    going: bool,
+    surface: Hit,
+    leg: u32,
+    leg_origin: vec3<f32>,
+    // From leg_origin to the surface.
+    left: f32,
+};
+
+// Random numbers of the current leg: the free flight, and which mist scatters.
+fn leg_numbers(ray: Ray, leg: u32) -> vec2<f32> {
+    return sobol_2d(ray.index, hash_combine(hash_combine(ray.key, DIMENSION_MIST), leg));
+}
+
 // Radiance that arrives along a camera ray, and 1 or 0 for whether it met anything. Each turn traces one ray, a shadow
-// ray of the last surface or else the next ray of the tree: the traversal stands in the program once, and lanes with
-// shadow rays keep step with lanes that go on.
+// ray of the last surface, a leg through mist, or else the next ray of the tree: the traversal stands in the program
+// once, and lanes with shadow rays keep step with lanes that go on.
 fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
     var radiance = vec3<f32>(0.0);
     var coverage = 1.0;
     ray_stack_size = 0u;
-    push_ray(Ray(camera.origin, camera.direction, 1.0, frame.medium, sample_index, camera.key, 0u));
+    push_ray(Ray(
+        camera.origin,
+        camera.origin,
+        camera.direction,
+        1.0,
+        frame.medium,
+        frame.mist,
+        0.0,
+        frame.pixel_spread,
+        sample_index,
+        camera.key,
+        0u,
+    ));
     var ray: Ray;
     var surface: Surface;
     // The light samples that the surface still waits for.
     var samples = vec2<u32>(0u);
+    var flight: Flight;
+    flight.going = false;
     let most_samples = max(frame.light_samples, frame.deep_light_samples);
-    var turns_left = (1u + RAY_STACK_SIZE * frame.max_depth) * (1u + most_samples);
-    while ((samples.x < samples.y || ray_stack_size > 0u) && turns_left > 0u) {
+    let most_legs = select(0u, MIST_CROSSINGS + 1u, HAS_MIST);
+    var turns_left = (1u + RAY_STACK_SIZE * frame.max_depth) * (1u + most_legs + most_samples);
+    while ((samples.x < samples.y || flight.going || ray_stack_size > 0u) && turns_left > 0u) {
         turns_left--;
         let lighting = samples.x < samples.y;
+        let flying = HAS_MIST && flight.going;
         var light: LightSample;
+        var numbers: vec2<f32>;
+        var free: f32;
         var origin: vec3<f32>;
         var direction: vec3<f32>;
+        var t_max = T_INFINITY;
         if (lighting) {
             light = light_sample(surface, materials[surface.material], -ray.direction, ray.index, ray.key, ray.depth, samples.x);
             samples.x++;
@@ -168,34 +227,90 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
             tally.rays[RAY_SHADOW] += 1u;
             origin = light.origin;
             direction = light.to_light;
+            t_max = SHADOW_T_MAX;
+        } else if (flying) {
+            numbers = leg_numbers(ray, flight.leg);
+            free = free_flight(mists_density(ray.mists), numbers.x);
+            origin = flight.leg_origin;
+            direction = ray.direction;
+            t_max = min(free, flight.left);
         } else {
             ray_stack_size--;
             ray = ray_stack[ray_stack_size];
             origin = ray.origin;
             direction = ray.direction;
         }
-        let hit = traverse(origin, direction, select(T_INFINITY, SHADOW_T_MAX, lighting), lighting);
+        let met = traverse(origin, direction, t_max, lighting, select(0u, INSTANCE_MIST, flying));
         if (lighting) {
-            radiance += select(ray.weight * light.radiance, vec3<f32>(0.0), hit.t > 0.0);
+            radiance += select(ray.weight * light.radiance, vec3<f32>(0.0), met.t > 0.0);
             continue;
         }
-        if (hit.t < 0.0) {
-            if (ray.depth == 0u && (frame.flags & FRAME_TRANSPARENT) != 0u) {
-                coverage = 0.0;
-            } else {
-                radiance += ray.weight * background(direction);
+        var hit = met;
+        if (HAS_MIST && !flying) {
+            flight = Flight(true, met, 0u, ray.start, select(met.t, T_INFINITY, met.t < 0.0));
+            continue;
+        }
+        let crossing = flying && met.t > 0.0;
+        // A flight that ends in a mist, where it does.
+        var scatterer = 0u;
+        if (flying && !crossing) {
+            flight.going = false;
+            if (free < flight.left) {
+                scatterer = choose_mist(ray.mists, numbers.y);
             }
+            hit = flight.surface;
+            origin = ray.origin;
+        }
+        if (scatterer == 0u) {
+            if (hit.t < 0.0) {
+                if (ray.depth == 0u && (frame.flags & FRAME_TRANSPARENT) != 0u) {
+                    coverage = 0.0;
+                } else {
+                    radiance += ray.weight * background(direction);
+                }
+                continue;
+            }
+            surface = surface_at(hit, origin, direction);
+        }
+        if (crossing) {
+            let number = materials[surface.material].medium;
+            if (!surface.entering && !media_contains(ray.mists, number)) {
+                // The ray was in it from the leg's beginning without knowing: its scattering is independent of that
+                // of the others, none of which scattered before this boundary.
+                free = free_flight(mist_density(number), numbers.y);
+                scatterer = select(0u, number, free < met.t);
+            }
+            flight.going = scatterer == 0u;
+            if (flight.going) {
+                let step = materials[surface.material].mist_step;
+                ray.mists = mist_cross(ray.mists, number, surface.entering);
+                flight.leg_origin = surface.point + step * direction;
+                flight.left -= met.t + step;
+                flight.leg++;
+                if (flight.leg > MIST_CROSSINGS) {
+                    tally.flags |= STATUS_LOOP_BOUND;
+                    flight.going = false;
+                }
+                continue;
+            }
+        }
+        samples = light_sample_range(ray.depth);
+        if (HAS_MIST && scatterer > 0u) {
+            surface = mist_event(flight.leg_origin + free * direction, scatterer);
+            radiance += ray.weight * (frame.ambient * surface.diffuse);
             continue;
         }
-        surface = surface_at(hit, origin, direction);
         let material = materials[surface.material];
-        radiance += ray.weight * (material.emission + frame.ambient * material.diffuse);
-        samples = light_sample_range(ray.depth);
+        let cone_width = ray.cone_width + ray.cone_spread * hit.t;
+        if (HAS_TEXTURE || HAS_BUMP) {
+            surface = surface_detail(hit, surface, direction, cone_width);
+        }
+        radiance += ray.weight * (material.emission + frame.ambient * surface.diffuse);
         if ((HAS_REFLECTION || HAS_REFRACTION) && ray.depth < frame.max_depth) {
-            spawn_rays(surface, material, ray);
+            spawn_rays(surface, material, ray, cone_width);
         }
     }
-    if (samples.x < samples.y || ray_stack_size > 0u) {
+    if (samples.x < samples.y || flight.going || ray_stack_size > 0u) {
         tally.flags |= STATUS_LOOP_BOUND;
     }
     return vec4<f32>(radiance, coverage);

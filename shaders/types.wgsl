@@ -48,7 +48,7 @@ struct Frame {
     mist: vec2<u32>,
     // First word of the surrounding picture in `texels`, or NONE for the gradient.
     background_image: u32,
-    // Angle between neighbouring pixels in the middle of the picture, radians.
+    // Angle between neighbouring camera samples in the middle of the picture, radians.
     pixel_spread: f32,
 };
 
@@ -140,9 +140,10 @@ struct Material {
     // First word of an image in `texels`, or NONE.
     texture: u32,
     bump: u32,
-    // Number of this refractive medium, from 1; 0 is opaque.
+    // Number of this refractive medium or mist, from 1: the index of this material plus 1; 0 is neither.
     medium: u32,
-    pad: u32,
+    // Mist: how far a ray goes on to be past the boundary, world units.
+    mist_step: f32,
 };
 
 // A point, a parallelogram (centre and edges) or a sphere; attenuation 1 / (c0 + c1 d + c2 d^2), d in world units.

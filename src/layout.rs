@@ -119,7 +119,7 @@ pub struct Material {
     pub texture: u32,
     pub bump: u32,
     pub medium: u32,
-    pub pad: u32,
+    pub mist_step: f32,
 }
 
 /// Twin of `Light`.

@@ -1,7 +1,7 @@
 //! The sample loop that both renderers serve: which pass of which sample runs where, and for how long.
 
 use crate::cpu::bindings::Bindings;
-use crate::cpu::media::media_at;
+use crate::cpu::media::{media_at, mists_at};
 use crate::film::Film;
 use crate::flatten::{SceneBuffers, WorkPlan, plan_work};
 use crate::layout::{Dispatch, Frame, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
@@ -109,6 +109,9 @@ pub fn render(
     let mut frame = scene.frame;
     if scene.features.refraction {
         frame.medium = media_at(&Bindings::new(&scene, &frame), frame.eye);
+    }
+    if scene.features.mist {
+        frame.mist = mists_at(&Bindings::new(&scene, &frame), frame.eye);
     }
     let [width, height] = frame.image_size.to_array();
     let band_pixels = options.max_band_pixels.unwrap_or(u64::MAX).min(renderer.max_band_pixels());

@@ -120,7 +120,7 @@ fn rust_structs() -> Vec<Struct> {
             texture,
             bump,
             medium,
-            pad,
+            mist_step,
         }),
         rust_struct!(Light { position, kind, colour, radius, falloff, pad0, u, pad1, v, pad2 }),
         rust_struct!(FilmPixel { low, high }),

@@ -15,20 +15,26 @@ const BOX_ERROR: f32 = 4.7683716e-7;
 // times zero is a number.
 const MIN_DIRECTION: f32 = 8.8817842e-16;
 
-// The world-space hit nearest to the origin, with t in (0, t_max).
+// The hit of a surface nearest to the origin, with t in (0, t_max), world space; mist is no surface.
 fn scene_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> Hit {
-    return traverse(origin, direction, t_max, false);
+    return traverse(origin, direction, t_max, false, 0u);
 }
 
-// Whether anything lies in (0, t_max) along the ray.
+// Whether any surface lies in (0, t_max) along the ray.
 fn scene_occluded(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> bool {
-    return traverse(origin, direction, t_max, true).t > 0.0;
+    return traverse(origin, direction, t_max, true, 0u).t > 0.0;
 }
 
-fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool) -> Hit {
+// The nearest boundary of a mist with t in (0, t_max).
+fn mist_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> Hit {
+    return traverse(origin, direction, t_max, false, INSTANCE_MIST);
+}
+
+// Meets the surfaces (kind 0) or the mists (kind INSTANCE_MIST); with any_hit, the first that comes.
+fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, kind: u32) -> Hit {
     var hit = Hit(MISS, NONE, 0u, 0.0, 0.0);
     var nearest = t_max;
-    if HAS_PLANE {
+    if HAS_PLANE && kind == 0u {
         for (var i = 0u; i < frame.plane_count; i++) {
             let object_origin = transform_point(instances[i].object_from_world, origin);
             let object_direction = transform_vector(instances[i].object_from_world, direction);
@@ -93,6 +99,9 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool) 
                     nearest = met.t;
                     if any_hit { return hit; }
                 }
+                continue;
+            }
+            if HAS_MIST && (instances[index].flags & INSTANCE_MIST) != kind {
                 continue;
             }
             let object_origin = transform_point(instances[index].object_from_world, origin);

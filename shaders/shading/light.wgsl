@@ -50,6 +50,18 @@ struct LightSample {
     radiance: vec3<f32>,
 };
 
+// Light from the unit direction l that goes to the viewer at v. Mist scatters it whatever the directions are.
+fn reflected_light(surface: Surface, material: Material, l: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
+    if (HAS_MIST && is_mist_event(surface)) {
+        return surface.diffuse;
+    }
+    var coloured = material;
+    coloured.diffuse = surface.diffuse;
+    let reflected = phong(coloured, surface.shading_normal, l, v, (frame.flags & FRAME_BLINN) != 0u);
+    // A normal that interpolation or a map has turned must not let in light from below the true surface.
+    return select(vec3<f32>(0.0), reflected, dot(surface.geometric_normal, l) > 0.0);
+}
+
 // One term of Whitted's sum over the lights, with soft shadows by distributed shadow rays (Cook, Porter, Carpenter
 // 1984, section 4). v is the unit vector to the viewer; index, key and depth are those of the ray that came.
 fn light_sample(surface: Surface, material: Material, v: vec3<f32>, index: u32, key: u32, depth: u32, sample: u32) -> LightSample {
@@ -75,12 +87,10 @@ fn light_sample(surface: Surface, material: Material, v: vec3<f32>, index: u32, 
     let from_surface = on_light - surface.point;
     let distance = sqrt(dot(from_surface, from_surface));
     let l = from_surface / max(distance, 1e-20);
-    let reflected = phong(material, surface.shading_normal, l, v, (frame.flags & FRAME_BLINN) != 0u);
+    let reflected = reflected_light(surface, material, l, v);
     let radiance = (weight * attenuation(light, distance)) * (light.colour * reflected);
-    // A normal that interpolation or a map has turned must not let in light from below the true surface.
-    let above = dot(surface.geometric_normal, l) > 0.0;
     let origin = offset_ray_origin(surface.point, surface.geometric_normal);
-    return LightSample(origin, on_light - origin, select(vec3<f32>(0.0), radiance, above));
+    return LightSample(origin, on_light - origin, radiance);
 }
 
 // A shadow ray ends just before t = 1: a surface that carries the light does not shade it.

@@ -43,7 +43,8 @@ fn refract_direction(d: vec3<f32>, n: vec3<f32>, n1: f32, n2: f32) -> Refraction
 }
 
 // The media around a point, innermost first: four 16-bit numbers, 0 for none. The number of a refractive medium is the
-// index of its material plus 1. Where solids overlap, leaving one that is not innermost changes nothing.
+// index of its material plus 1. Where solids overlap, leaving one that is not innermost changes nothing. Mists have
+// lists of the same form (shading/medium.wgsl).
 fn media_contains(media: vec2<u32>, medium: u32) -> bool {
     return (media.x & 0xffffu) == medium || (media.x >> 16u) == medium
         || (media.y & 0xffffu) == medium || (media.y >> 16u) == medium;

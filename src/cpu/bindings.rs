@@ -12,6 +12,8 @@ pub struct Bindings<'a> {
     pub materials: &'a [Material],
     pub lights: &'a [Light],
     pub texels: &'a [u32],
+    /// `HAS_MIST` of the kernel.
+    pub has_mist: bool,
 }
 
 impl<'a> Bindings<'a> {
@@ -25,6 +27,7 @@ impl<'a> Bindings<'a> {
             materials: &scene.materials,
             lights: &scene.lights,
             texels: &scene.texels,
+            has_mist: scene.features.mist,
         }
     }
 }

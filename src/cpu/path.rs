@@ -2,20 +2,25 @@
 
 use crate::cpu::bindings::Bindings;
 use crate::cpu::camera::CameraRay;
-use crate::cpu::geometry::bvh::{scene_intersect, scene_occluded};
-use crate::cpu::geometry::hit::Surface;
+use crate::cpu::geometry::bvh::{mist_intersect, scene_intersect, scene_occluded};
+use crate::cpu::geometry::hit::{Hit, Surface};
 use crate::cpu::geometry::instance::surface_at;
 use crate::cpu::math::elementary::unit_vector;
 use crate::cpu::math::offset::offset_ray_origin;
 use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::math::sampling::{keep_above, sample_glossy};
+use crate::cpu::shading::background::background;
+use crate::cpu::shading::detail::surface_detail;
 use crate::cpu::shading::light::{SHADOW_T_MAX, light_sample, light_sample_range};
 use crate::cpu::shading::material::{
     fresnel_schlick, media_contains, media_enter, media_index, media_leave, refract_direction,
 };
-use crate::layout::{FRAME_TRANSPARENT, Material, RAY_REFLECTED, RAY_REFRACTED, RAY_SHADOW};
+use crate::cpu::shading::medium::{
+    MIST_CROSSINGS, choose_mist, free_flight, mist_cross, mist_density, mist_event, mists_density,
+};
+use crate::layout::{FRAME_TRANSPARENT, Material, RAY_REFLECTED, RAY_REFRACTED, RAY_SHADOW, STATUS_LOOP_BOUND};
 use crate::renderer::Tally;
-use glam::{UVec2, Vec3, Vec4};
+use glam::{UVec2, Vec2, Vec3, Vec4};
 
 pub const DIMENSION_PIXEL: u32 = 1;
 pub const DIMENSION_LENS: u32 = 2;
@@ -24,31 +29,31 @@ pub const DIMENSION_CHOICE: u32 = 4;
 pub const DIMENSION_LIGHT_CHOICE: u32 = 5;
 pub const BRANCH_REFLECTED: u32 = 6;
 pub const BRANCH_REFRACTED: u32 = 7;
+pub const DIMENSION_MIST: u32 = 8;
 /// Light i has the dimension `DIMENSION_LIGHT + i`.
 pub const DIMENSION_LIGHT: u32 = 16;
 
-const T_INFINITY: f32 = 3.0e38;
+pub const T_INFINITY: f32 = 3.0e38;
 
 /// A ray of the tree. It has no weight: the recursion multiplies on the way back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     pub origin: Vec3,
+    /// Where it is as to mist: the point of the surface that it leaves, without the offset, which might skip a boundary.
+    pub start: Vec3,
     /// Unit.
     pub direction: Vec3,
+    /// The refractive media and the mists that it is in.
     pub media: UVec2,
+    pub mists: UVec2,
+    /// Width of what it stands for at its origin, world units, and how that grows a world unit: a ray cone
+    /// (Akenine-Möller et al., Ray Tracing Gems ch. 20).
+    pub cone_width: f32,
+    pub cone_spread: f32,
     /// Number among the samples that share `key`, and the key of its random decisions.
     pub index: u32,
     pub key: u32,
     pub depth: u32,
-}
-
-/// Radiance of a ray that leaves the scene: a gradient over the height of its direction.
-pub fn background(scene: &Bindings, direction: Vec3) -> Vec3 {
-    mix_colour(scene.frame.background_bottom, scene.frame.background_top, 0.5 + 0.5 * direction.y)
-}
-
-pub fn mix_colour(a: Vec3, b: Vec3, t: f32) -> Vec3 {
-    a + (b - a) * t
 }
 
 /// The shares of reflected and refracted light at a surface, and where the refracted ray goes.
@@ -105,12 +110,13 @@ pub fn reflected_direction(surface: &Surface, material: &Material, ray: &Ray, in
     unit_vector(keep_above(r, surface.geometric_normal))
 }
 
-/// Radiance of the rays that leave a surface, by recursion.
+/// Radiance of the rays that leave a surface, on which the ray's cone is `cone_width` wide, by recursion.
 pub fn spawn_rays(
     scene: &Bindings,
     surface: &Surface,
     material: &Material,
     ray: &Ray,
+    cone_width: f32,
     pass_index: u32,
     tally: &mut Tally,
 ) -> Vec3 {
@@ -130,8 +136,12 @@ pub fn spawn_rays(
         tally.rays[RAY_REFRACTED as usize] += 1;
         let spawned = Ray {
             origin: offset_ray_origin(surface.point, -surface.geometric_normal),
+            start: surface.point,
             direction: scattering.direction,
             media: scattering.media,
+            mists: ray.mists,
+            cone_width,
+            cone_spread: ray.cone_spread,
             index: ray.index,
             key: hash_combine(ray.key, BRANCH_REFRACTED),
             depth: ray.depth + 1,
@@ -147,11 +157,15 @@ pub fn spawn_rays(
             count = scene.frame.glossy_samples;
             first = ray.index.wrapping_mul(scene.frame.pass_count).wrapping_add(pass_index).wrapping_mul(count);
         }
+        // A glossy ray stands for its part of the square, of which the samples of a pixel are at least a few.
+        let cone_spread = ray.cone_spread + 0.5 * material.glossy;
         for i in 0..count {
             tally.rays[RAY_REFLECTED as usize] += 1;
             let index = first.wrapping_add(i);
             let direction = reflected_direction(surface, material, ray, index);
-            let spawned = Ray { origin, direction, media: ray.media, index, key, depth: ray.depth + 1 };
+            let start = surface.point;
+            let depth = ray.depth + 1;
+            let spawned = Ray { origin, start, direction, cone_width, cone_spread, index, key, depth, ..*ray };
             let weight = reflected / count as f32;
             radiance += weight * ray_radiance(scene, &spawned, pass_index, tally).unwrap_or_default();
         }
@@ -159,18 +173,61 @@ pub fn spawn_rays(
     radiance
 }
 
-/// Radiance that arrives along a ray; `None` where a camera ray leaves a transparent scene.
-fn ray_radiance(scene: &Bindings, ray: &Ray, pass_index: u32, tally: &mut Tally) -> Option<Vec3> {
-    let hit = scene_intersect(scene, ray.origin, ray.direction, T_INFINITY, tally);
-    if hit.t < 0.0 {
-        let transparent = ray.depth == 0 && scene.frame.flags & FRAME_TRANSPARENT != 0;
-        return (!transparent).then(|| background(scene, ray.direction));
+/// What ends a ray's way through mist.
+enum Arrival {
+    /// The surface ahead, or the open if there is none; the ray is in these mists there.
+    Surface(UVec2),
+    /// A scattering event.
+    Scattered(Surface),
+}
+
+/// Random numbers of a leg: the free flight, and which mist scatters.
+fn leg_numbers(ray: &Ray, leg: u32) -> Vec2 {
+    sobol_2d(ray.index, hash_combine(hash_combine(ray.key, DIMENSION_MIST), leg))
+}
+
+/// The way of a ray through mist to `hit`, leg by leg from boundary to boundary. Free flights have no memory, so that
+/// each leg samples one of its own.
+fn fly(scene: &Bindings, ray: &Ray, hit: Hit, tally: &mut Tally) -> Arrival {
+    let mut mists = ray.mists;
+    let mut origin = ray.start;
+    let mut left = if hit.t < 0.0 { T_INFINITY } else { hit.t };
+    for leg in 0..=MIST_CROSSINGS {
+        let numbers = leg_numbers(ray, leg);
+        let free = free_flight(mists_density(scene, mists), numbers.x);
+        let met = mist_intersect(scene, origin, ray.direction, free.min(left), tally);
+        if met.t < 0.0 {
+            if free < left {
+                let scatterer = choose_mist(scene, mists, numbers.y);
+                return Arrival::Scattered(mist_event(scene, origin + free * ray.direction, scatterer));
+            }
+            return Arrival::Surface(mists);
+        }
+        let surface = surface_at(scene, met, origin, ray.direction);
+        let material = &scene.materials[surface.material as usize];
+        let number = material.medium;
+        if !surface.entering && !media_contains(mists, number) {
+            // The ray was in it from the leg's beginning without knowing: its scattering is independent of that of
+            // the others, none of which scattered before this boundary.
+            let free = free_flight(mist_density(scene, number), numbers.y);
+            if free < met.t {
+                return Arrival::Scattered(mist_event(scene, origin + free * ray.direction, number));
+            }
+        }
+        mists = mist_cross(mists, number, surface.entering);
+        origin = surface.point + material.mist_step * ray.direction;
+        left -= met.t + material.mist_step;
     }
-    let surface = surface_at(scene, hit, ray.origin, ray.direction);
+    tally.flags |= STATUS_LOOP_BOUND;
+    Arrival::Surface(mists)
+}
+
+/// Direct light at a surface or a scattering event.
+fn light_radiance(scene: &Bindings, surface: &Surface, ray: &Ray, pass_index: u32, tally: &mut Tally) -> Vec3 {
     let material = &scene.materials[surface.material as usize];
-    let mut radiance = material.emission + scene.frame.ambient * material.diffuse;
+    let mut radiance = Vec3::ZERO;
     for sample in light_sample_range(scene.frame, pass_index, ray.depth) {
-        let light = light_sample(scene, &surface, material, -ray.direction, ray, sample);
+        let light = light_sample(scene, surface, material, -ray.direction, ray, sample);
         if light.radiance == Vec3::ZERO {
             continue;
         }
@@ -179,8 +236,31 @@ fn ray_radiance(scene: &Bindings, ray: &Ray, pass_index: u32, tally: &mut Tally)
             radiance += light.radiance;
         }
     }
+    radiance
+}
+
+/// Radiance that arrives along a ray; `None` where a camera ray leaves a transparent scene.
+fn ray_radiance(scene: &Bindings, ray: &Ray, pass_index: u32, tally: &mut Tally) -> Option<Vec3> {
+    let hit = scene_intersect(scene, ray.origin, ray.direction, T_INFINITY, tally);
+    let arrival = if scene.has_mist { fly(scene, ray, hit, tally) } else { Arrival::Surface(ray.mists) };
+    let ray = match arrival {
+        Arrival::Surface(mists) => Ray { mists, ..*ray },
+        Arrival::Scattered(event) => {
+            return Some(scene.frame.ambient * event.diffuse + light_radiance(scene, &event, ray, pass_index, tally));
+        }
+    };
+    if hit.t < 0.0 {
+        let transparent = ray.depth == 0 && scene.frame.flags & FRAME_TRANSPARENT != 0;
+        return (!transparent).then(|| background(scene, ray.direction));
+    }
+    let surface = surface_at(scene, hit, ray.origin, ray.direction);
+    let cone_width = ray.cone_width + ray.cone_spread * hit.t;
+    let surface = surface_detail(scene, hit, surface, ray.direction, cone_width);
+    let material = &scene.materials[surface.material as usize];
+    let mut radiance = material.emission + scene.frame.ambient * surface.diffuse;
+    radiance += light_radiance(scene, &surface, &ray, pass_index, tally);
     if ray.depth < scene.frame.max_depth {
-        radiance += spawn_rays(scene, &surface, material, ray, pass_index, tally);
+        radiance += spawn_rays(scene, &surface, material, &ray, cone_width, pass_index, tally);
     }
     Some(radiance)
 }
@@ -195,8 +275,12 @@ pub fn path_radiance(
 ) -> Vec4 {
     let ray = Ray {
         origin: camera.origin,
+        start: camera.origin,
         direction: camera.direction,
         media: scene.frame.medium,
+        mists: scene.frame.mist,
+        cone_width: 0.0,
+        cone_spread: scene.frame.pixel_spread,
         index: sample_index,
         key: camera.key,
         depth: 0,

@@ -12,6 +12,14 @@ const MAX_SHADOW_RAYS: u64 = 1 << 24;
 /// Reflections and refractions one after another; the reference renderer recurses once for each.
 const MAX_DEPTH: u32 = 100;
 
+/// The angle between neighbouring camera samples, radians: that between pixels, shared out to their samples as far as
+/// these are reliably apart (as pbrt-v4 does, section 10.1.3).
+fn sample_spread(scene: &Scene) -> f32 {
+    let pixel = 2.0 * (0.5 * scene.camera.fov.to_radians()).tan() / f64::from(scene.size[1]);
+    let share = (1.0 / f64::from(scene.sampling.camera.max(1)).sqrt()).max(0.125);
+    (pixel * share) as f32
+}
+
 pub fn frame(scene: &Scene, plane_count: u32, has_root: bool) -> Result<Frame> {
     let camera = &scene.camera;
     let sampling = &scene.sampling;
@@ -75,7 +83,7 @@ pub fn frame(scene: &Scene, plane_count: u32, has_root: bool) -> Result<Frame> {
         has_root: u32::from(has_root),
         light_count: scene.lights.len() as u32,
         background_image: NONE,
-        pixel_spread: (2.0 * (0.5 * camera.fov.to_radians()).tan() / f64::from(height)) as f32,
+        pixel_spread: sample_spread(scene),
         ..Frame::default()
     };
     let vectors: [Vec3; 5] = [frame.eye, frame.ambient, frame.background_bottom, frame.background_top, frame.right];

@@ -1,9 +1,10 @@
 //! Placements as instances in the kernel's layout, and the hierarchy over them.
 
-use super::bounds::shape_bounds;
+use super::bounds::{Bounds, shape_bounds};
 use super::bvh;
 use super::materials::MaterialIndices;
 use super::mesh::Meshes;
+use super::mist::Mists;
 use super::walk::Placement;
 use crate::layout::{
     AffineRows, Instance, NONE, Node, SHAPE_CONE, SHAPE_CUBE, SHAPE_CYLINDER, SHAPE_MESH, SHAPE_PLANE, SHAPE_SPHERE,
@@ -34,6 +35,7 @@ pub fn build(
     placements: &[Placement],
     meshes: &Meshes,
     materials: &MaterialIndices,
+    mut mists: Mists,
 ) -> Result<BuiltInstances> {
     let mut planes = Vec::new();
     let mut bounded = Vec::with_capacity(placements.len());
@@ -41,22 +43,39 @@ pub fn build(
     let mut instanced_triangles = 0;
     for placement in placements {
         let name = &graph.node(placement.node).name;
-        let mut instance = pack(placement, name)?;
-        instance.material = materials.get(&placement.material).copied().unwrap_or(0);
+        if let Shape::Mesh(mesh) = &placement.geometry.shape
+            && meshes.index_of(mesh).is_none_or(|index| meshes.built[index].triangles.is_empty())
+        {
+            continue;
+        }
+        let material = materials.get(&placement.material).copied().unwrap_or(0);
+        let mut world_from_object = placement.world_from_object;
+        let mut mist_step = None;
+        if mists.holds(material) {
+            let Some(object_bounds) = object_bounds(&placement.geometry.shape, meshes) else {
+                return Err(Error::Scene(format!(
+                    "node '{name}': a plane has no inside that mist could fill; use a closed shape, such as a large cube"
+                )));
+            };
+            let (grown, step) = mists.grown(&world_from_object, &object_bounds);
+            (world_from_object, mist_step) = (grown, Some(step));
+        }
+        let mut instance = pack(&placement.geometry.shape, &world_from_object, name)?;
+        instance.material = material;
+        if let Some(step) = mist_step {
+            mists.mark(&mut instance, step)?;
+        }
         let bounds = match &placement.geometry.shape {
             Shape::Mesh(mesh) => {
                 // The mesh's index stands in for its root, which is known once the upper level is built.
                 let Some(index) = meshes.index_of(mesh) else { continue };
                 let mesh = &meshes.built[index];
-                if mesh.triangles.is_empty() {
-                    continue;
-                }
                 instance.root = index as u32;
                 instance.parameters = mesh.uv_rectangle;
                 instanced_triangles += mesh.triangles.len() as u64;
-                mesh.bounds.transformed(&placement.world_from_object)
+                mesh.bounds.transformed(&world_from_object)
             }
-            shape => match shape_bounds(shape, &placement.world_from_object) {
+            shape => match shape_bounds(shape, &world_from_object) {
                 Some(bounds) => bounds,
                 None => {
                     planes.push(instance);
@@ -107,8 +126,16 @@ fn ordered(
     BuiltInstances { instances, plane_count, nodes, instanced_triangles, depth: hierarchy.depth + mesh_depth }
 }
 
-fn pack(placement: &Placement, name: &str) -> Result<Instance> {
-    let (shape, parameters) = match placement.geometry.shape {
+/// The box around a shape in its own space; `None` for a plane.
+fn object_bounds(shape: &Shape, meshes: &Meshes) -> Option<Bounds> {
+    match shape {
+        Shape::Mesh(mesh) => Some(meshes.built[meshes.index_of(mesh)?].bounds),
+        shape => shape_bounds(shape, &DAffine3::IDENTITY),
+    }
+}
+
+fn pack(shape: &Shape, world_from_object: &DAffine3, name: &str) -> Result<Instance> {
+    let (shape, parameters) = match *shape {
         Shape::Sphere => (SHAPE_SPHERE, Vec4::ZERO),
         Shape::Cube => (SHAPE_CUBE, Vec4::ZERO),
         Shape::Cylinder => (SHAPE_CYLINDER, Vec4::ZERO),
@@ -121,12 +148,12 @@ fn pack(placement: &Placement, name: &str) -> Result<Instance> {
         return Err(Error::Scene(format!("node '{name}': the radii of a torus must be above 0")));
     }
     let instance = Instance {
-        object_from_world: rows(&placement.world_from_object.inverse()),
+        object_from_world: rows(&world_from_object.inverse()),
         shape,
         material: 0,
         root: NONE,
         flags: 0,
-        world_from_object: rows(&placement.world_from_object),
+        world_from_object: rows(world_from_object),
         parameters,
     };
     if !instance.object_from_world.iter().chain(&instance.world_from_object).all(|row| row.is_finite()) {

@@ -1,10 +1,9 @@
 //! Materials in use, and the numbers of the refractive media.
 
 use super::walk::Placement;
-use crate::layout::{Material, NONE};
+use crate::layout::{MATERIAL_MIST, Material, NONE};
 use crate::scene::{self, MaterialId, Scene};
 use crate::{Error, Result};
-use glam::Vec3;
 use std::collections::{HashMap, HashSet};
 
 /// Media are numbered from 1; two of them share a word in the kernel.
@@ -40,15 +39,15 @@ fn pack(material: &scene::Material, medium: u32, spread: f32) -> Material {
         shininess: material.shininess,
         specular: material.specular,
         reflection: material.reflection,
-        emission: Vec3::ZERO,
+        emission: material.emission,
         glossy: material.glossy * spread,
         ior: material.ior.unwrap_or(0.0),
-        density: 0.0,
+        density: material.density.unwrap_or(0.0),
         noise_z: 0.0,
-        flags: 0,
+        flags: if material.density.is_some() { MATERIAL_MIST } else { 0 },
         texture: NONE,
         bump: NONE,
         medium: if material.ior.is_some() { medium } else { 0 },
-        pad: 0,
+        mist_step: 0.0,
     }
 }

@@ -9,6 +9,7 @@ mod instances;
 mod lights;
 mod materials;
 mod mesh;
+mod mist;
 mod walk;
 mod work;
 
@@ -66,10 +67,12 @@ pub struct Statistics {
 /// leaves the range of f32, where a mesh refers to vertices that it lacks, or where the camera is degenerate.
 pub fn flatten(scene: &Scene) -> Result<SceneBuffers> {
     let start = Instant::now();
+    let scene = &*lights::with_visible_lights(scene);
     let placements = walk::placements(scene)?;
     let meshes = mesh::build_all(&placements)?;
-    let (materials, material_indices) = materials::materials_in_use(scene, &placements)?;
-    let built = instances::build(&scene.graph, &placements, &meshes, &material_indices)?;
+    let (mut materials, material_indices) = materials::materials_in_use(scene, &placements)?;
+    let mists = mist::Mists::new(&mut materials, scene.camera.eye);
+    let built = instances::build(&scene.graph, &placements, &meshes, &material_indices, mists)?;
     let lights = lights::lights(scene)?;
     let frame = frame::frame(scene, built.plane_count, !built.nodes.is_empty())?;
 

@@ -92,6 +92,7 @@ pub fn bindings(buffers: &SceneBuffers) -> Bindings<'_> {
         materials: &buffers.materials,
         lights: &buffers.lights,
         texels: &buffers.texels,
+        has_mist: buffers.features.mist,
     }
 }
 

@@ -7,7 +7,7 @@ use super::instance::{instance_intersect, transform_point, transform_vector};
 use super::plane::plane_intersect;
 use super::triangle::{TriangleRay, triangle_intersect, triangle_ray};
 use crate::cpu::bindings::Bindings;
-use crate::layout::{NONE, Node, SHAPE_MESH, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
+use crate::layout::{INSTANCE_MIST, NONE, Node, SHAPE_MESH, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
 use crate::renderer::Tally;
 use glam::{UVec2, Vec3};
 
@@ -18,14 +18,20 @@ const GROUP_PRIMITIVES: u32 = 0x00ff_ffff;
 const BOX_ERROR: f32 = 4.768_371_6e-7;
 const MIN_DIRECTION: f32 = 8.881_784e-16;
 
-/// The world-space hit nearest to the origin, with t in (0, t_max); t is [`MISS`] where there is none.
+/// The hit of a surface nearest to the origin, with t in (0, t_max), world space; t is [`MISS`] where there is none.
+/// Mist is no surface.
 pub fn scene_intersect(scene: &Bindings, origin: Vec3, direction: Vec3, t_max: f32, tally: &mut Tally) -> Hit {
-    traverse::<false>(scene, origin, direction, t_max, tally)
+    traverse::<false, 0>(scene, origin, direction, t_max, tally)
 }
 
-/// Whether anything lies in (0, t_max) along the ray.
+/// Whether any surface lies in (0, t_max) along the ray.
 pub fn scene_occluded(scene: &Bindings, origin: Vec3, direction: Vec3, t_max: f32, tally: &mut Tally) -> bool {
-    traverse::<true>(scene, origin, direction, t_max, tally).t > 0.0
+    traverse::<true, 0>(scene, origin, direction, t_max, tally).t > 0.0
+}
+
+/// The nearest boundary of a mist with t in (0, t_max).
+pub fn mist_intersect(scene: &Bindings, origin: Vec3, direction: Vec3, t_max: f32, tally: &mut Tally) -> Hit {
+    traverse::<false, INSTANCE_MIST>(scene, origin, direction, t_max, tally)
 }
 
 /// The groups that await their turn.
@@ -53,7 +59,8 @@ impl Stack {
     }
 }
 
-fn traverse<const ANY_HIT: bool>(
+/// Meets the surfaces (kind 0) or the mists (kind [`INSTANCE_MIST`]); with `ANY_HIT`, the first that comes.
+fn traverse<const ANY_HIT: bool, const KIND: u32>(
     scene: &Bindings,
     origin: Vec3,
     direction: Vec3,
@@ -62,7 +69,8 @@ fn traverse<const ANY_HIT: bool>(
 ) -> Hit {
     let mut hit = Hit { t: MISS, instance: NONE, primitive: 0, b1: 0.0, b2: 0.0 };
     let mut nearest = t_max;
-    for (i, instance) in (0..scene.frame.plane_count).zip(scene.instances) {
+    let plane_count = if KIND == 0 { scene.frame.plane_count } else { 0 };
+    for (i, instance) in (0..plane_count).zip(scene.instances) {
         let object_origin = transform_point(&instance.object_from_world, origin);
         let object_direction = transform_vector(&instance.object_from_world, direction);
         let plane = plane_intersect(object_origin, object_direction, nearest);
@@ -126,6 +134,9 @@ fn traverse<const ANY_HIT: bool>(
                 continue;
             }
             let instance = &scene.instances[index as usize];
+            if instance.flags & INSTANCE_MIST != KIND {
+                continue;
+            }
             let object_origin = transform_point(&instance.object_from_world, origin);
             let object_direction = transform_vector(&instance.object_from_world, direction);
             if instance.shape == SHAPE_MESH {

@@ -7,6 +7,7 @@ use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::math::sampling::sample_cone;
 use crate::cpu::path::{DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, Ray};
 use crate::cpu::shading::material::phong;
+use crate::cpu::shading::medium::is_mist_event;
 use crate::layout::{FRAME_BLINN, Frame, LIGHT_PARALLELOGRAM, LIGHT_POINT, Light, Material};
 use glam::{Vec2, Vec3};
 use std::ops::Range;
@@ -62,6 +63,17 @@ pub struct LightSample {
     pub radiance: Vec3,
 }
 
+/// Light from the unit direction l that goes to the viewer at v. Mist scatters it whatever the directions are.
+fn reflected_light(scene: &Bindings, surface: &Surface, material: &Material, l: Vec3, v: Vec3) -> Vec3 {
+    if is_mist_event(surface) {
+        return surface.diffuse;
+    }
+    let coloured = Material { diffuse: surface.diffuse, ..*material };
+    let reflected = phong(&coloured, surface.shading_normal, l, v, scene.frame.flags & FRAME_BLINN != 0);
+    // A normal that interpolation or a map has turned must not let in light from below the true surface.
+    if surface.geometric_normal.dot(l) > 0.0 { reflected } else { Vec3::ZERO }
+}
+
 /// One term of Whitted's sum over the lights, with soft shadows by distributed shadow rays (Cook, Porter, Carpenter
 /// 1984, section 4). v is the unit vector to the viewer, `ray` the ray that came.
 pub fn light_sample(
@@ -96,12 +108,10 @@ pub fn light_sample(
     let from_surface = on_light - surface.point;
     let distance = from_surface.dot(from_surface).sqrt();
     let l = from_surface / distance.max(1e-20);
-    let reflected = phong(material, surface.shading_normal, l, v, frame.flags & FRAME_BLINN != 0);
+    let reflected = reflected_light(scene, surface, material, l, v);
     let radiance = (weight * attenuation(light, distance)) * (light.colour * reflected);
-    // A normal that interpolation or a map has turned must not let in light from below the true surface.
-    let above = surface.geometric_normal.dot(l) > 0.0;
     let origin = offset_ray_origin(surface.point, surface.geometric_normal);
-    LightSample { origin, to_light: on_light - origin, radiance: if above { radiance } else { Vec3::ZERO } }
+    LightSample { origin, to_light: on_light - origin, radiance }
 }
 
 /// A shadow ray ends just before t = 1: a surface that carries the light does not shade it.

@@ -1,1 +1,80 @@
-//! Mist: homogeneous volumes that scatter. Twin of `shaders/shading/medium.wgsl`.
+//! Mist: closed volumes that scatter light once. Twin of `shaders/shading/medium.wgsl`, where the method is described.
+
+use crate::cpu::bindings::Bindings;
+use crate::cpu::geometry::hit::Surface;
+use crate::cpu::math::elementary::log2_poly;
+use crate::cpu::path::T_INFINITY;
+use crate::cpu::shading::material::{media_contains, media_enter, media_leave};
+use glam::{UVec2, Vec3};
+
+/// Boundaries that one ray may cross.
+pub const MIST_CROSSINGS: u32 = 256;
+
+/// The list beyond a boundary.
+pub fn mist_cross(mists: UVec2, number: u32, entering: bool) -> UVec2 {
+    if !entering {
+        return media_leave(mists, number);
+    }
+    if media_contains(mists, number) {
+        return mists;
+    }
+    media_enter(mists, number)
+}
+
+/// Scattering events a world unit of one mist; number 0 is none.
+pub fn mist_density(scene: &Bindings, number: u32) -> f32 {
+    if number == 0 {
+        return 0.0;
+    }
+    scene.materials[number as usize - 1].density
+}
+
+/// The same of all the mists together.
+pub fn mists_density(scene: &Bindings, mists: UVec2) -> f32 {
+    mist_density(scene, mists.x & 0xffff)
+        + mist_density(scene, mists.x >> 16)
+        + mist_density(scene, mists.y & 0xffff)
+        + mist_density(scene, mists.y >> 16)
+}
+
+/// World units to the next scattering event, by inversion of exp(-density s), for xi in [0, 1).
+pub fn free_flight(density: f32, xi: f32) -> f32 {
+    if density <= 0.0 {
+        return T_INFINITY;
+    }
+    -0.693_147_2 * log2_poly(1.0 - xi) / density
+}
+
+/// Which of the mists scatters, in proportion to their densities.
+pub fn choose_mist(scene: &Bindings, mists: UVec2, xi: f32) -> u32 {
+    let mut left = xi * mists_density(scene, mists);
+    left -= mist_density(scene, mists.x & 0xffff);
+    if left < 0.0 || mists.x >> 16 == 0 {
+        return mists.x & 0xffff;
+    }
+    left -= mist_density(scene, mists.x >> 16);
+    if left < 0.0 || mists.y & 0xffff == 0 {
+        return mists.x >> 16;
+    }
+    left -= mist_density(scene, mists.y & 0xffff);
+    if left < 0.0 || mists.y >> 16 == 0 {
+        return mists.y & 0xffff;
+    }
+    mists.y >> 16
+}
+
+/// A scattering event as `light_sample` takes it: a surface without a normal. `number` is that of a mist, not 0.
+pub fn mist_event(scene: &Bindings, point: Vec3, number: u32) -> Surface {
+    Surface {
+        point,
+        geometric_normal: Vec3::ZERO,
+        shading_normal: Vec3::ZERO,
+        entering: false,
+        material: number - 1,
+        diffuse: scene.materials[number as usize - 1].diffuse,
+    }
+}
+
+pub fn is_mist_event(surface: &Surface) -> bool {
+    surface.geometric_normal == Vec3::ZERO
+}
