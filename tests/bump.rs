@@ -1,6 +1,6 @@
 //! Bump maps: slopes with a known normal, heights that rise outwards on every shape, and normals that stay in view.
 
-use crate::support::function_table::{Compare::Floats, FunctionTable, Lane, Twins, floats, lane_vec3, vec3_lane};
+use crate::support::function_table::{Compare::Floats, FunctionTable, Lane, Twins, lane_vec3, vec3_lane};
 use crate::support::placed::*;
 use crate::support::rays::{draw, unit_vector};
 use glam::{DAffine3, DVec3, Vec2, Vec3, Vec4};
@@ -124,7 +124,8 @@ fn rises(buffers: &SceneBuffers, random: &mut Random, transform: &DAffine3, pair
 fn leanings(pairs: &[[f64; 2]]) -> [f64; 2] {
     let clear: Vec<_> = pairs.iter().filter(|[rise, lean]| rise.abs() > 2e-4 && lean.abs() > 1e-5).collect();
     assert!(clear.len() > 300, "only {} of {} pairs are clear", clear.len(), pairs.len());
-    [-1.0, 1.0].map(|sign| clear.iter().filter(|[rise, lean]| rise * lean * sign > 0.0).count() as f64)
+    [-1.0, 1.0]
+        .map(|sign| clear.iter().filter(|[rise, lean]| rise * lean * sign > 0.0).count() as f64)
         .map(|count| count / clear.len() as f64)
 }
 
@@ -326,8 +327,8 @@ fn normals_agree_on_both_devices() {
         pairs.map(|(a, b)| distance(a[0], b[0]).max(distance(a[1], b[1]))).fold(0.0, f32::max)
     };
     let footprints = |twins: &Twins<4, 2>| -> Twins<4, 1> {
-        let last = |rows: &[[Lane; 2]]| rows.iter().map(|row| [floats([f32::from_bits(row[0][3]), 0.0, 0.0, 0.0])]);
-        Twins { inputs: twins.inputs.clone(), gpu: last(&twins.gpu).collect(), cpu: last(&twins.cpu).collect() }
+        let last = |rows: &[[Lane; 2]]| rows.iter().map(|row| [[row[0][3], 0, 0, 0]]).collect::<Vec<[Lane; 1]>>();
+        Twins { inputs: twins.inputs.clone(), gpu: last(&twins.gpu), cpu: last(&twins.cpu) }
     };
     println!("normals: {:.2e} apart at most, {:?}", apart(&twins), twins.difference([Floats, Floats]));
     // Dot and cross products may be summed in another order.

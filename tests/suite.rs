@@ -6,6 +6,7 @@ mod analytic;
 mod bump;
 mod cli;
 mod compare;
+mod detail;
 mod devices;
 mod film;
 mod flatten;
