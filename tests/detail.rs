@@ -121,9 +121,8 @@ fn mapped_scene() -> SceneBuffers {
 /// Of the rays that meet the same on both, those whose normal or colour differ.
 fn differing(gpu: &[Answer], cpu: &[Answer]) -> [usize; 2] {
     let same = gpu.iter().zip(cpu).filter(|(a, b)| a.met == b.met);
-    let different = same
-        .clone()
-        .filter(|(a, b)| !((a.normal - b.normal).length() < 1e-3) || !((a.diffuse - b.diffuse).length() < 1e-3));
+    let near = |a: Vec3, b: Vec3| (a - b).length() < 1e-3;
+    let different = same.clone().filter(|(a, b)| !near(a.normal, b.normal) || !near(a.diffuse, b.diffuse));
     [different.count(), same.filter(|(_, b)| b.normal != Vec3::ZERO).count()]
 }
 
