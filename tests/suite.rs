@@ -3,8 +3,10 @@
 mod support;
 
 mod analytic;
+mod bump;
 mod cli;
 mod compare;
+mod detail;
 mod devices;
 mod film;
 mod flatten;
@@ -15,6 +17,7 @@ mod intersections;
 mod layout;
 mod loop_cap;
 mod math_tables;
+mod noise;
 mod parameterisation;
 mod parity;
 mod roots;
