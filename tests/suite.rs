@@ -3,6 +3,7 @@
 mod support;
 
 mod analytic;
+mod backgrounds;
 mod cli;
 mod compare;
 mod devices;
@@ -13,8 +14,11 @@ mod function_tables;
 mod gpu;
 mod intersections;
 mod layout;
+mod lights;
 mod loop_cap;
 mod math_tables;
+mod mist;
+mod mist_tables;
 mod parity;
 mod roots;
 mod script;
