@@ -6,7 +6,7 @@ use obvhs::aabb::Aabb;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 
 /// Groups that a ray can put aside; `shaders/geometry/bvh.wgsl` has the same constant. Where it enters a mesh it puts
-/// two aside, and [`build`] keeps each level of the hierarchy within half of the rest.
+/// two aside, and `build` keeps each level of the hierarchy within half of the rest.
 pub const TRAVERSAL_STACK: u32 = 32;
 const MAX_STACK: u32 = (TRAVERSAL_STACK - 2) / 2;
 

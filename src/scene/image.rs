@@ -16,3 +16,13 @@ pub enum Texels {
     Rgba8(Vec<[u8; 4]>),
     Rgb32F(Vec<[f32; 3]>),
 }
+
+impl Texels {
+    /// Memory that they take.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Texels::Rgba8(texels) => size_of_val(texels.as_slice()),
+            Texels::Rgb32F(texels) => size_of_val(texels.as_slice()),
+        }
+    }
+}

@@ -4,12 +4,14 @@
 //! 4, in `node:scale(2, 2, 0)` argument 3, as Lua itself counts for methods.
 
 use super::diagnostics::{self, Raised};
+use super::given::{Given, Place};
 use super::guard::{CALL_COST, Guard};
 use super::state::State;
-use crate::scene::{Light, MaterialId, NodeId};
+use crate::scene::{Image, Light, MaterialId, NodeId};
 use mlua::{AnyUserData, Lua, MultiValue, Table, Value};
 use std::cell::{Ref, RefCell, RefMut};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// What every function of ours works on.
 #[derive(Clone)]
@@ -22,13 +24,17 @@ pub(super) struct Context {
 pub(super) struct NodeHandle(pub NodeId);
 /// What `gr.material` and its kin return.
 pub(super) struct MaterialHandle(pub MaterialId);
-/// What `gr.light` returns.
+/// What `gr.light` and its kin return.
 pub(super) struct LightHandle(pub Light);
+/// What `gr.texture` returns.
+pub(super) struct TextureHandle(pub Arc<Image>);
 
 /// Why a call failed.
 pub(super) enum Failure {
     /// An argument, counted from 0, is not what it should be.
     Argument { index: usize, message: String },
+    /// The value under a key of a table is not what it should be.
+    Key { key: String, message: String },
     /// Anything else that the message alone explains.
     Call(String),
     /// To be passed on as it is.
@@ -93,6 +99,7 @@ impl Call<'_> {
         let message = match failure {
             Failure::Lua(error) => return error,
             Failure::Call(message) => format!("{place}{name}: {message}"),
+            Failure::Key { key, message } => format!("{place}{name}: key '{key}': {message}"),
             Failure::Argument { index, message } => {
                 let method = self.lua.inspect_stack(0, |debug| debug.names().name_what == Some("method"));
                 match (method == Some(true), index) {
@@ -112,24 +119,28 @@ impl Call<'_> {
         self.arguments.get(index).unwrap_or(&Value::Nil)
     }
 
+    /// How many arguments there are, trailing nils included.
+    pub fn count(&self) -> usize {
+        self.arguments.len()
+    }
+
     /// Whether the argument was left out or is nil.
     pub fn absent(&self, index: usize) -> bool {
         self.value(index).is_nil()
     }
 
+    /// An argument that has no default.
+    pub fn given(&self, index: usize) -> Given<'_> {
+        Given { call: self, value: self.value(index).clone(), place: Place::Argument(index), required: true }
+    }
+
     /// The failure of an argument that is not what was `expected`.
     pub fn unexpected(&self, index: usize, expected: &str) -> Failure {
-        let message = format!("expected {expected}, got {}", self.describe(self.value(index)));
-        Failure::Argument { index, message }
+        self.given(index).unexpected(expected)
     }
 
     pub fn text(&self, index: usize, expected: &str) -> Outcome<String> {
-        match self.value(index) {
-            Value::String(text) => Ok(text.to_string_lossy()),
-            Value::Integer(number) => Ok(number.to_string()),
-            Value::Number(number) => Ok(number.to_string()),
-            _ => Err(self.unexpected(index, expected)),
-        }
+        self.given(index).text(expected)
     }
 
     pub fn name(&self, index: usize) -> Outcome<String> {
@@ -143,10 +154,7 @@ impl Call<'_> {
 
     /// A number for which `check` holds; `expected` says so in words.
     pub fn number_where(&self, index: usize, expected: &str, check: impl Fn(f64) -> bool) -> Outcome<f64> {
-        match finite(self.lua, self.value(index)) {
-            Some(number) if check(number) => Ok(number),
-            _ => Err(self.unexpected(index, expected)),
-        }
+        self.given(index).number_where(expected, check)
     }
 
     pub fn table(&self, index: usize, expected: &str) -> Outcome<&Table> {
@@ -158,27 +166,11 @@ impl Call<'_> {
 
     /// A table of exactly `N` numbers.
     pub fn tuple<const N: usize>(&self, index: usize) -> Outcome<[f64; N]> {
-        let table = self.table(index, &format!("a table of {N} numbers"))?;
-        tuple(self.lua, table).map_err(|got| Failure::Argument {
-            index,
-            message: format!("expected a table of {N} numbers, got {}", self.describe_element(got)),
-        })
+        self.given(index).tuple()
     }
 
     pub fn node(&self, index: usize) -> Outcome<NodeId> {
-        match self.value(index) {
-            Value::UserData(data) => data.borrow::<NodeHandle>().map(|handle| handle.0).ok(),
-            _ => None,
-        }
-        .ok_or_else(|| self.unexpected(index, "a node"))
-    }
-
-    pub fn material(&self, index: usize) -> Outcome<MaterialId> {
-        match self.value(index) {
-            Value::UserData(data) => data.borrow::<MaterialHandle>().map(|handle| handle.0).ok(),
-            _ => None,
-        }
-        .ok_or_else(|| self.unexpected(index, "a material"))
+        self.given(index).node()
     }
 
     /// A value in the words of a message.
@@ -211,6 +203,8 @@ impl Call<'_> {
             "a material".to_owned()
         } else if data.is::<LightHandle>() {
             "a light".to_owned()
+        } else if data.is::<TextureHandle>() {
+            "a texture".to_owned()
         } else {
             "a foreign object".to_owned()
         }

@@ -3,12 +3,15 @@
 //! A scene is a Lua 5.4 program that builds a graph of nodes with the `gr.*` functions and asks for pictures with
 //! `gr.render`. It runs in a sandbox (`sandbox.rs`) under a memory and an instruction limit (`guard.rs`); what it may
 //! read is decided by `search.rs`. Each `gr.*` function is a thin mapping from its positional arguments
-//! (`arguments.rs`) onto the named descriptions of [`crate::scene`].
+//! (`arguments.rs`), or the keys of its table, to named values (`fields.rs`), from which one builder makes the
+//! descriptions of [`crate::scene`].
 
 mod api;
 mod arguments;
 mod conventions;
 mod diagnostics;
+mod fields;
+mod given;
 mod guard;
 mod modules;
 mod sandbox;

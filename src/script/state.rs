@@ -3,7 +3,7 @@
 use super::conventions::{ConventionSources, TransformOrder};
 use super::search::SearchPath;
 use super::{ScriptOptions, diagnostics};
-use crate::scene::{Geometry, Material, MaterialId, Mesh, Node, NodeId, SceneGraph};
+use crate::scene::{Background, Bump, Geometry, Image, Material, MaterialId, Mesh, Node, NodeId, SceneGraph};
 use glam::DAffine3;
 use mlua::Lua;
 use std::collections::{HashMap, HashSet};
@@ -22,6 +22,10 @@ pub(super) struct State {
     pub files: SearchPath,
     /// By resolved path.
     pub meshes: HashMap<PathBuf, Arc<Mesh>>,
+    /// By resolved path.
+    pub images: HashMap<PathBuf, Arc<Image>>,
+    /// Of the pictures that follow.
+    pub background: Background,
     /// Names of the files that were compiled, as messages show them.
     pub chunks: HashSet<String>,
     pub frame: u32,
@@ -64,6 +68,8 @@ impl State {
             conventions: ConventionSources { command_line: options.conventions, ..ConventionSources::default() },
             files: SearchPath::new(scene),
             meshes: HashMap::new(),
+            images: HashMap::new(),
+            background: Background::default(),
             chunks: HashSet::new(),
             frame: options.frame,
             seed: options.seed,
@@ -96,6 +102,14 @@ impl State {
 
     pub fn set_material(&mut self, node: NodeId, material: MaterialId) {
         Arc::make_mut(&mut self.graph).node_mut(node).material = Some(material);
+    }
+
+    pub fn set_texture(&mut self, node: NodeId, texture: Option<Arc<Image>>) {
+        Arc::make_mut(&mut self.graph).node_mut(node).texture = texture;
+    }
+
+    pub fn set_bump(&mut self, node: NodeId, bump: Option<Bump>) {
+        Arc::make_mut(&mut self.graph).node_mut(node).bump = bump;
     }
 
     /// Makes `child` a child of `parent`; `false` and nothing done if that would close a cycle.

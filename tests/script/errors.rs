@@ -107,10 +107,10 @@ fn unknown_functions_get_the_nearest_name() {
     insta::assert_snapshot!(message("\nlocal s = gr.shpere('s')"), @"scene.lua:2: gr.shpere: no such function; did you mean gr.sphere?");
     insta::assert_snapshot!(message("gr.node('n'):tranlsate(1, 2, 3)"), @"scene.lua:1: gr.tranlsate: no such function; did you mean gr.translate?");
     insta::assert_snapshot!(message("gr.material({1,1,1},{0,0,0},1):polish()"), @"scene.lua:1: gr.polish: no such function");
-    insta::assert_snapshot!(message("gr.perlin_bump_material()"), @"scene.lua:1: gr.perlin_bump_material: no such function");
+    insta::assert_snapshot!(message("gr.subsurface_material()"), @"scene.lua:1: gr.subsurface_material: no such function");
     insta::assert_snapshot!(message("function gr.mine() end\ngr.mine2()"), @"scene.lua:2: gr.mine2: no such function; did you mean gr.mine?");
     // A name may be asked for without calling it.
-    assert!(Sandbox::new().run("if gr.texture then error('no') end").is_ok());
+    assert!(Sandbox::new().run("if gr.hologram then error('no') end").is_ok());
     // Another table's missing function is not ours.
     insta::assert_snapshot!(message("local t = {} t.shpere()"), @"scene.lua:1: attempt to call a nil value (field 'shpere')");
 }

@@ -33,7 +33,7 @@ pub fn surface_detail(scene: &Bindings, hit: Hit, surface: Surface, direction: V
     if !textured && !bumped {
         return detailed;
     }
-    let mut parameterisation = parameterise_at(scene, hit, &surface);
+    let mut parameterisation = parameterise_at(scene, hit, surface);
     let cosine = direction.dot(surface.geometric_normal);
     let footprint = map_footprint(cone_width, cosine, parameterisation.dpdu, parameterisation.dpdv);
     if textured {

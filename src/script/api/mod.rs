@@ -1,5 +1,8 @@
 //! The functions of `gr`, one file a theme.
 
+mod background;
+mod camera;
+pub(super) mod images;
 mod lights;
 mod materials;
 mod mesh;
@@ -9,7 +12,7 @@ mod settings;
 mod shapes;
 mod transforms;
 
-use super::arguments::{Call, Context, LightHandle, MaterialHandle, NodeHandle, Outcome, call};
+use super::arguments::{Call, Context, LightHandle, MaterialHandle, NodeHandle, Outcome, TextureHandle, call};
 use super::diagnostics;
 use mlua::{AnyUserData, Lua, MetaMethod, MultiValue, Table, UserData, UserDataMethods, Value};
 
@@ -30,7 +33,9 @@ pub(super) fn register(lua: &Lua, context: &Context) -> mlua::Result<Table> {
         mesh::FUNCTIONS,
         transforms::FUNCTIONS,
         materials::FUNCTIONS,
+        images::FUNCTIONS,
         lights::FUNCTIONS,
+        background::FUNCTIONS,
         settings::FUNCTIONS,
     ];
     for &(name, most, body) in themes.into_iter().flatten() {
@@ -109,3 +114,4 @@ macro_rules! scene_object {
 scene_object!(NodeHandle, "node");
 scene_object!(MaterialHandle, "material");
 scene_object!(LightHandle, "light");
+scene_object!(TextureHandle, "texture");

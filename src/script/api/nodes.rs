@@ -1,17 +1,20 @@
 //! `gr.node`, `gr.joint`, and what hangs nodes together.
 
 use super::Function;
-use crate::scene::{Geometry, NodeId};
+use crate::scene::{Bump, Geometry, Image, NodeId};
 use crate::script::arguments::{Call, Failure, NodeHandle, Outcome};
 use crate::script::state::State;
 use glam::{DQuat, DVec3};
 use mlua::Value;
+use std::sync::Arc;
 
 pub(super) const FUNCTIONS: &[Function] = &[
     ("gr.node", 1, node),
     ("gr.joint", 3, joint),
     ("gr.add_child", 2, add_child),
     ("gr.set_material", 2, set_material),
+    ("gr.set_texture", 2, set_texture),
+    ("gr.set_bump", 2, set_bump),
 ];
 
 /// Makes a node that is named by argument 1, and its handle.
@@ -56,11 +59,41 @@ fn add_child(call: &Call) -> Outcome<Value> {
 /// `node:set_material(material)`, on nodes with a shape. Children do not inherit it.
 fn set_material(call: &Call) -> Outcome<Value> {
     let node = call.node(0)?;
-    let material = call.material(1)?;
-    if call.state().graph().node(node).geometry.is_none() {
-        let name = call.state().graph().node(node).name.clone();
-        return Err(Failure::Call(format!("'{name}' has no shape that could have a material; set it on the shapes")));
-    }
+    let material = call.given(1).material()?;
+    check_shape(call, node, "a material")?;
     call.state_mut().set_material(node, material);
     Ok(Value::Nil)
+}
+
+/// `node:set_texture(texture)`, on nodes with a shape: in place of the material's; nil gives that back.
+fn set_texture(call: &Call) -> Outcome<Value> {
+    let node = call.node(0)?;
+    let texture = image_or_nil(call, 1)?;
+    check_shape(call, node, "a texture")?;
+    call.state_mut().set_texture(node, texture);
+    Ok(Value::Nil)
+}
+
+/// `node:set_bump(texture)`, on nodes with a shape: in place of the material's; nil gives that back.
+fn set_bump(call: &Call) -> Outcome<Value> {
+    let node = call.node(0)?;
+    let bump = image_or_nil(call, 1)?.map(Bump::Image);
+    check_shape(call, node, "a bump map")?;
+    call.state_mut().set_bump(node, bump);
+    Ok(Value::Nil)
+}
+
+fn image_or_nil(call: &Call, index: usize) -> Outcome<Option<Arc<Image>>> {
+    if call.absent(index) { Ok(None) } else { call.given(index).image().map(Some) }
+}
+
+fn check_shape(call: &Call, node: NodeId, what: &str) -> Outcome<()> {
+    let state = call.state();
+    match state.graph().node(node) {
+        node if node.geometry.is_some() => Ok(()),
+        node => {
+            let name = &node.name;
+            Err(Failure::Call(format!("'{name}' has no shape that could have {what}; set it on the shapes")))
+        }
+    }
 }

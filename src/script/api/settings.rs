@@ -4,10 +4,11 @@ use super::Function;
 use crate::script::arguments::{Call, Failure, Outcome};
 use mlua::Value;
 
-pub(super) const FUNCTIONS: &[Function] = &[("gr.frame_cmd", 0, frame_cmd), ("gr.conventions", 1, conventions)];
+pub(super) const FUNCTIONS: &[Function] =
+    &[("gr.frame_cmd", 0, frame), ("gr.frame", 0, frame), ("gr.conventions", 1, conventions)];
 
-/// `gr.frame_cmd()`: the number of the frame that the command line asks for, 0 in a plain run.
-fn frame_cmd(call: &Call) -> Outcome<Value> {
+/// `gr.frame_cmd()` or `gr.frame()`: the number of the frame that the command line asks for, 0 in a plain run.
+fn frame(call: &Call) -> Outcome<Value> {
     Ok(Value::Integer(i64::from(call.state().frame)))
 }
 
