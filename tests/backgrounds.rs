@@ -16,7 +16,8 @@ const WIDTH: u32 = 64;
 const HEIGHT: u32 = 32;
 
 fn patches(float: bool) -> Arc<Image> {
-    let colours = (0..WIDTH * HEIGHT).map(|i| PATCHES[(i / WIDTH * 2 / HEIGHT) as usize][(i % WIDTH * 4 / WIDTH) as usize]);
+    let colours =
+        (0..WIDTH * HEIGHT).map(|i| PATCHES[(i / WIDTH * 2 / HEIGHT) as usize][(i % WIDTH * 4 / WIDTH) as usize]);
     let texels = if float {
         Texels::Rgb32F(colours.map(|colour| colour.map(|c| c * 100.0)).collect())
     } else {

@@ -49,7 +49,8 @@ fn rays_at(solid: &Solid) -> Vec<Ray> {
 impl Shape<'_> {
     fn parts(&self) -> Vec<String> {
         let shape = format!("geometry/{}.wgsl", self.name);
-        vec!["math/roots.wgsl".to_owned(), "geometry/hit.wgsl".to_owned(), shape]
+        let shared = ["math/elementary.wgsl", "math/roots.wgsl", "geometry/hit.wgsl", "geometry/revolution.wgsl"];
+        shared.iter().map(|&part| part.to_owned()).chain([shape]).collect()
     }
 
     /// `last` is the lane with the radii.

@@ -45,11 +45,7 @@ fn slab_stage(density: f32) -> Stage {
 
 #[test]
 fn a_slab_transmits_as_beer_and_lambert_say() {
-    assert_picture(
-        || slab_stage(0.4),
-        TOLERANCE,
-        |scene, x, y| Some(DVec3::splat(transmitted(scene, x, y, 0.4, 3.0))),
-    );
+    assert_picture(|| slab_stage(0.4), TOLERANCE, |scene, x, y| Some(DVec3::splat(transmitted(scene, x, y, 0.4, 3.0))));
 }
 
 #[test]
@@ -70,8 +66,7 @@ fn what_scatters_shows_the_mists_colour() {
         layer(&mut stage, -6.0, -3.0, 0.4, Vec3::new(0.9, 0.5, 0.1));
         stage
     };
-    let expected =
-        |scene: &Scene, x, y| Some(DVec3::new(0.9, 0.5, 0.1) * (1.0 - transmitted(scene, x, y, 0.4, 3.0)));
+    let expected = |scene: &Scene, x, y| Some(DVec3::new(0.9, 0.5, 0.1) * (1.0 - transmitted(scene, x, y, 0.4, 3.0)));
     assert_picture(build, TOLERANCE, expected);
     let scene = build().finish();
     for device in &BOTH {

@@ -55,7 +55,7 @@ fn atan2_poly(y: f32, x: f32) -> f32 {
     let steep = ratio > 0.41421357;
     let t = select(ratio, (ratio - 1.0) / (ratio + 1.0), steep);
     let q = t * t;
-    var series = q * 0.080600657 - 0.1387978;
+    var series = q * 0.08060066 - 0.1387978;
     series = series * q + 0.1997792;
     series = series * q - 0.33332956;
     let arc = t + t * (series * q);

@@ -2,7 +2,6 @@
 
 use super::bounds::{Bounds, shape_bounds};
 use super::bvh;
-use super::materials::MaterialIndices;
 use super::mesh::Meshes;
 use super::mist::Mists;
 use super::walk::Placement;
@@ -30,25 +29,25 @@ pub struct BuiltInstances {
     pub depth: u32,
 }
 
+/// `materials` has one index for each placement.
 pub fn build(
     graph: &SceneGraph,
     placements: &[Placement],
     meshes: &Meshes,
-    materials: &MaterialIndices,
+    materials: &[u32],
     mut mists: Mists,
 ) -> Result<BuiltInstances> {
     let mut planes = Vec::new();
     let mut bounded = Vec::with_capacity(placements.len());
     let mut boxes = Vec::with_capacity(placements.len());
     let mut instanced_triangles = 0;
-    for placement in placements {
+    for (placement, &material) in placements.iter().zip(materials) {
         let name = &graph.node(placement.node).name;
         if let Shape::Mesh(mesh) = &placement.geometry.shape
             && meshes.index_of(mesh).is_none_or(|index| meshes.built[index].triangles.is_empty())
         {
             continue;
         }
-        let material = materials.get(&placement.material).copied().unwrap_or(0);
         let mut world_from_object = placement.world_from_object;
         let mut mist_step = None;
         if mists.holds(material) {

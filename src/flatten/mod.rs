@@ -1,5 +1,6 @@
 //! From the scene graph to the buffers that both renderers read.
 
+mod atlas;
 mod binned;
 mod bounds;
 mod bvh;
@@ -36,6 +37,7 @@ pub struct SceneBuffers {
     /// Those in use.
     pub materials: Vec<Material>,
     pub lights: Vec<Light>,
+    /// The distinct images in use; `shaders/shading/texture.wgsl` describes the format.
     pub texels: Vec<u32>,
     /// The rays that the scene asks for.
     pub sampling: Sampling,
@@ -64,17 +66,23 @@ pub struct Statistics {
 ///
 /// # Errors
 /// [`crate::Error::Scene`] where the graph has a cycle or too many paths, where a transform cannot be inverted or
-/// leaves the range of f32, where a mesh refers to vertices that it lacks, or where the camera is degenerate.
+/// leaves the range of f32, where a mesh refers to vertices that it lacks, where images are too large, or where the
+/// camera is degenerate.
 pub fn flatten(scene: &Scene) -> Result<SceneBuffers> {
     let start = Instant::now();
     let scene = &*lights::with_visible_lights(scene);
     let placements = walk::placements(scene)?;
     let meshes = mesh::build_all(&placements)?;
-    let (mut materials, material_indices) = materials::materials_in_use(scene, &placements)?;
+    let mut atlas = atlas::Atlas::default();
+    let materials::MaterialsInUse { packed: mut materials, of_placement } =
+        materials::materials_in_use(scene, &placements, &mut atlas)?;
     let mists = mist::Mists::new(&mut materials, scene.camera.eye);
-    let built = instances::build(&scene.graph, &placements, &meshes, &material_indices, mists)?;
+    let built = instances::build(&scene.graph, &placements, &meshes, &of_placement, mists)?;
     let lights = lights::lights(scene)?;
-    let frame = frame::frame(scene, built.plane_count, !built.nodes.is_empty())?;
+    let mut frame = frame::frame(scene, built.plane_count, !built.nodes.is_empty())?;
+    if let Some(image) = &scene.background.image {
+        frame.background_image = atlas.add(image)?;
+    }
 
     let mut nodes = built.nodes;
     let mut triangles = Vec::with_capacity(meshes.built.iter().map(|mesh| mesh.triangles.len()).sum());
@@ -89,7 +97,7 @@ pub fn flatten(scene: &Scene) -> Result<SceneBuffers> {
         triangles,
         materials,
         lights,
-        texels: Vec::new(),
+        texels: atlas.into_texels(),
         sampling: scene.sampling,
         features: FeatureSet::ALL_OFF,
         statistics: Statistics {

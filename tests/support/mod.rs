@@ -1,6 +1,7 @@
 //! Scenes built in a few lines, and pictures of them from either renderer.
 
 pub mod function_table;
+pub mod kernel;
 pub mod oracle;
 pub mod placed;
 pub mod rays;
@@ -11,8 +12,8 @@ use gpu_trace::film::Film;
 use gpu_trace::flatten::flatten;
 use gpu_trace::render::{RenderOptions, Rendered, Unattended, render};
 use gpu_trace::scene::{
-    Background, Camera, Conventions, Geometry, Light, LightExtent, Material, MaterialId, Node, NodeId, Sampling, Scene, SceneGraph,
-    Shape, Transfer,
+    Background, Camera, Conventions, Geometry, Light, LightExtent, Material, MaterialId, Node, NodeId, Sampling, Scene,
+    SceneGraph, Shape, Transfer,
 };
 use std::sync::Arc;
 

@@ -58,7 +58,7 @@ pub fn atan2_poly(y: f32, x: f32) -> f32 {
     let steep = ratio > 0.414_213_57;
     let t = if steep { (ratio - 1.0) / (ratio + 1.0) } else { ratio };
     let q = t * t;
-    let mut series = q * 0.080_600_657 - 0.138_797_8;
+    let mut series = q * 0.080_600_66 - 0.138_797_8;
     series = series * q + 0.199_779_2;
     series = series * q - 0.333_329_56;
     let arc = t + t * (series * q);
