@@ -4,8 +4,10 @@ mod support;
 
 mod analytic;
 mod backgrounds;
+mod bump;
 mod cli;
 mod compare;
+mod detail;
 mod devices;
 mod film;
 mod flatten;
@@ -20,6 +22,7 @@ mod math_tables;
 mod mist;
 mod mist_tables;
 mod parameterisation;
+mod noise;
 mod parity;
 mod roots;
 mod script;
