@@ -3,6 +3,7 @@
 mod support;
 
 mod analytic;
+mod backgrounds;
 mod bump;
 mod cli;
 mod compare;
@@ -15,8 +16,11 @@ mod function_tables;
 mod gpu;
 mod intersections;
 mod layout;
+mod lights;
 mod loop_cap;
 mod math_tables;
+mod mist;
+mod mist_tables;
 mod noise;
 mod parameterisation;
 mod parity;

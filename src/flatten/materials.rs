@@ -112,14 +112,19 @@ fn pack<'a>(described: &Described<'a>, medium: u32, spread: f32, atlas: &mut Atl
         emission: material.emission,
         glossy: material.glossy * spread,
         ior: material.ior.unwrap_or(0.0),
-        density: material.density.unwrap_or(0.0),
+        density: 0.0,
         noise_z: 0.0,
-        flags: if material.density.is_some() { MATERIAL_MIST } else { 0 },
+        flags: 0,
         texture: NONE,
         bump: NONE,
-        medium: if described.is_refractive() { medium } else { 0 },
+        medium: if described.is_medium() { medium } else { 0 },
         mist_step: 0.0,
     };
+    if let Some(density) = material.density {
+        packed.density = density;
+        packed.flags |= MATERIAL_MIST;
+        (packed.specular, packed.reflection, packed.ior, packed.emission) = (Vec3::ZERO, 0.0, 0.0, Vec3::ZERO);
+    }
     if let Some(image) = described.texture {
         packed.texture = atlas.add(image)?;
         packed.flags |= MATERIAL_TEXTURE_REPLACES;
