@@ -11,6 +11,7 @@ mod flatten;
 mod flatten_tables;
 mod function_tables;
 mod gpu;
+mod images;
 mod intersections;
 mod layout;
 mod loop_cap;
