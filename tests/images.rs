@@ -165,7 +165,7 @@ fn the_contents_decide_and_not_the_name() {
     }
     let text = "v 0 0 0\n";
     insta::assert_snapshot!(problem("a.png", text), @"this is no image of a known kind; expected PNG, JPEG, BMP, TGA, GIF, WebP, QOI, PNM, HDR or EXR");
-    insta::assert_snapshot!(problem("a.tga", text), @"");
+    insta::assert_snapshot!(problem("a.tga", text), @"the TGA data end too early");
     insta::assert_snapshot!(problem("a.png", ""), @"the file is empty");
     insta::assert_snapshot!(problem("a.png", b"II*\0\x08\0\0\0\0\0\0\0"), @"it is TIFF, which is not supported; expected PNG, JPEG, BMP, TGA, GIF, WebP, QOI, PNM, HDR or EXR");
 }
@@ -261,9 +261,9 @@ fn huge_images_are_refused_before_they_are_decoded() {
 #[test]
 fn images_without_pixels_are_refused() {
     let none = png_chunks(&[(b"IHDR", &[0, 0, 0, 0, 0, 0, 0, 1, 8, 6, 0, 0, 0]), (b"IEND", &[])]);
-    insta::assert_snapshot!(problem("a.png", none), @"");
-    insta::assert_snapshot!(problem("a.qoi", b"qoif\0\0\0\0\0\0\0\x01\x04\0"), @"");
-    insta::assert_snapshot!(problem("a.tga", [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 24, 0]), @"");
+    insta::assert_snapshot!(problem("a.png", none), @"the PNG data cannot be read: Format error decoding Png: Invalid image dimensions");
+    insta::assert_snapshot!(problem("a.qoi", b"qoif\0\0\0\0\0\0\0\x01\x04\0"), @"the QOI data cannot be read: Format error decoding Qoi: invalid image dimensions: 0x1");
+    insta::assert_snapshot!(problem("a.tga", [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 24, 0]), @"the TGA data cannot be read: Format error decoding Tga: Invalid empty image");
 }
 
 /// A PNG of these chunks, with their checksums.

@@ -154,7 +154,7 @@ fn bad_keys_and_values_are_named() {
         ("gr.material({1,1,1})", "gr.material: argument 2: expected a table of 3 numbers, got nil"),
         (
             "gr.material({diffuse={1,1,1}}, {0,0,0}, 1)",
-            "gr.material: argument 1: expected a table of 3 numbers, got a table with names",
+            "gr.material: argument 1: expected a table of 3 numbers, got 0 values",
         ),
         (
             "gr.light{{0,0,0}, colour={1,1,1}}",
