@@ -14,6 +14,7 @@ mod flatten;
 mod flatten_tables;
 mod function_tables;
 mod gpu;
+mod images;
 mod intersections;
 mod layout;
 mod lights;
