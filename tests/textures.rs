@@ -387,7 +387,10 @@ fn a_picture_of_a_side_is_the_image() {
             stage.scene.ambient = Vec3::ONE;
             let half = (PI / 6.0).tan();
             let (low, high) = (DVec3::new(-half, -half, -2.0), DVec3::new(half, half, -1.0));
-            let film = stage_with(stage, |stage| drop(stage.add_box(low, high, textured(&image)))).film(device);
+            let film = stage_with(stage, |stage| {
+                stage.add_box(low, high, textured(&image));
+            })
+            .film(device);
             let mut worst = 0.0f64;
             for y in 0..edge {
                 for x in 0..edge {
