@@ -16,7 +16,7 @@ put(scene, gr.plane('dark tiles'), gr.material({ 0.16, 0.20, 0.26 }, { 0, 0, 0 }
 local tile = gr.cube('light tile')
 tile:set_material(gr.material({ 0.86, 0.85, 0.80 }, { 0, 0, 0 }, 1))
 tile:scale(1, 0.002, 1)
--- A row of tiles along x, and rows of rows: 40 x 60 tiles of 100 nodes.
+-- A row of tiles along x, and rows of rows: 7,200 tiles, 182 nodes.
 local rows = {}
 for parity = 0, 1 do
   rows[parity] = gr.node('row')
@@ -27,7 +27,7 @@ for parity = 0, 1 do
     rows[parity]:add_child(place)
   end
 end
-for row = -56, 3 do
+for row = -116, 3 do
   local place = gr.node('place')
   place:add_child(rows[row % 2])
   place:translate(0, 0, row)

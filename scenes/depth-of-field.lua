@@ -16,8 +16,8 @@ put(scene, gr.plane('dark squares'), gr.refl_material({ 0.24, 0.14, 0.09 }, { 0,
 local tile = gr.cube('light square')
 tile:set_material(gr.refl_material({ 0.82, 0.72, 0.54 }, { 0, 0, 0 }, 1, 0.10))
 tile:scale(1, 0.004, 1)
-for row = -14, 5 do
-  for column = -7, 6 do
+for row = -40, 5 do
+  for column = -16, 12 do
     if (row + column) % 2 == 0 then
       local place = gr.node('place')
       place:add_child(tile)

@@ -62,6 +62,15 @@ for i = 1, 5 do
   end
 end
 
+-- Posts far behind the viewer, for all leaves to mirror.
+for i = -9, 9 do
+  local post = put(scene, gr.cylinder('post'), gr.material(colours[i % 5 + 1], { 0.3, 0.3, 0.3 }, 30))
+  post:scale(0.45, 2, 0.45)
+  post:translate(0, 2, 6)
+  post:rotate('y', 13 * i + 5)
+  post:translate(0, 0, 4)
+end
+
 local key = gr.light({ -3, 6, 6 }, { 0.80, 0.77, 0.70 }, { 1, 0, 0 })
 local fill = gr.light({ 5, 4, 6 }, { 0.26, 0.29, 0.35 }, { 1, 0, 0 })
 

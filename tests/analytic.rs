@@ -7,7 +7,7 @@ use gpu_trace::film::Film;
 use gpu_trace::scene::{LightExtent, Material, Scene, Shape};
 
 /// Largest difference from `expected` over the pixels for which there is one.
-fn worst_error(film: &Film, expected: impl Fn(u32, u32) -> Option<DVec3>) -> f64 {
+pub fn worst_error(film: &Film, expected: impl Fn(u32, u32) -> Option<DVec3>) -> f64 {
     let mut worst = 0.0_f64;
     let mut compared = 0;
     for y in 0..film.height {
@@ -24,7 +24,7 @@ fn worst_error(film: &Film, expected: impl Fn(u32, u32) -> Option<DVec3>) -> f64
 }
 
 /// Renders on both devices and compares with a tolerance.
-fn assert_picture(build: impl Fn() -> Stage, tolerance: f64, expected: impl Fn(&Scene, u32, u32) -> Option<DVec3>) {
+pub fn assert_picture(build: impl Fn() -> Stage, tolerance: f64, expected: impl Fn(&Scene, u32, u32) -> Option<DVec3>) {
     let scene = build().finish();
     for device in &BOTH {
         let film = build().film(device);
@@ -34,7 +34,7 @@ fn assert_picture(build: impl Fn() -> Stage, tolerance: f64, expected: impl Fn(&
     }
 }
 
-fn centre_direction(scene: &Scene, x: u32, y: u32) -> DVec3 {
+pub fn centre_direction(scene: &Scene, x: u32, y: u32) -> DVec3 {
     pixel_direction(scene, x, y, [0.5, 0.5])
 }
 

@@ -38,13 +38,13 @@ fn reduced_scenes(file: &Path) -> Vec<Scene> {
     scenes
 }
 
-fn compare(a: &Film, b: &Film, scene: &Scene) -> Comparison {
+pub fn compare(a: &Film, b: &Film, scene: &Scene) -> Comparison {
     let resolve = |film: &Film| film.resolve(scene.transfer, false);
     compare_images(&resolve(a), &resolve(b)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The bounds of issue and design: FLIP at most 0.002, at most 0.1 % of the pixels off by more than 2/255.
-fn agrees(comparison: &Comparison) -> bool {
+pub fn agrees(comparison: &Comparison) -> bool {
     comparison.flip_mean <= 0.002 && comparison.differing_share <= 0.001
 }
 

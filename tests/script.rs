@@ -6,6 +6,8 @@ mod meshes;
 mod pictures;
 mod runaways;
 mod sandbox;
+mod surfaces;
+mod tables;
 mod transforms;
 
 use gpu_trace::Error;

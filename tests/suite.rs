@@ -3,18 +3,26 @@
 mod support;
 
 mod analytic;
+mod backgrounds;
+mod bump;
 mod cli;
 mod compare;
+mod detail;
 mod devices;
 mod film;
 mod flatten;
 mod flatten_tables;
 mod function_tables;
 mod gpu;
+mod images;
 mod intersections;
 mod layout;
+mod lights;
 mod loop_cap;
 mod math_tables;
+mod mist;
+mod mist_tables;
+mod noise;
 mod parameterisation;
 mod parity;
 mod roots;

@@ -354,6 +354,22 @@ fn described(buffers: &SceneBuffers, index: u32) -> Material4 {
 }
 
 #[test]
+fn mists_and_glasses_come_first_and_have_numbers() {
+    let mut stage = Stage::new(8, 8);
+    stage.add(Shape::Sphere, DAffine3::IDENTITY, paint(0.1, 0.1, 0.1));
+    let mist = Material { density: Some(0.25), reflection: 1.0, ior: Some(1.5), ..paint(0.2, 0.2, 0.2) };
+    stage.add(Shape::Sphere, DAffine3::IDENTITY, Material { bump: Some(Bump::Noise { z: 0.0 }), ..mist });
+    stage.add(Shape::Sphere, DAffine3::IDENTITY, Material { ior: Some(1.5), ..paint(0.3, 0.3, 0.3) });
+    let buffers = flattened(&stage.finish());
+    let numbers: Vec<_> = buffers.materials.iter().map(|m| (m.medium, m.density, m.ior, m.flags)).collect();
+    assert_eq!(numbers, [(1, 0.25, 0.0, MATERIAL_MIST), (2, 0.0, 1.5, 0), (0, 0.0, 0.0, 0)]);
+    assert_eq!(buffers.materials[0].reflection, 0.0, "mist has no surface");
+    let found: Vec<_> = buffers.instances.iter().map(|i| buffers.materials[i.material as usize].diffuse.x).collect();
+    assert_eq!(found.len(), 3);
+    assert!([0.1, 0.2, 0.3].iter().all(|grey| found.contains(grey)), "{found:?}");
+}
+
+#[test]
 fn images_that_cannot_be_packed_are_refused() {
     let scene = |image: Image| {
         let mut stage = Stage::new(8, 8);

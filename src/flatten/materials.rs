@@ -1,10 +1,11 @@
-//! Materials in use with the textures and bumps of their nodes, and the numbers of the refractive media.
+//! Materials in use with the textures and bumps of their nodes, and the numbers of the media.
 
 use super::atlas::Atlas;
 use super::walk::Placement;
 use crate::layout::{MATERIAL_MIST, MATERIAL_NOISE_BUMP, MATERIAL_TEXTURE_REPLACES, Material, NONE};
 use crate::scene::{self, Bump, Image, MaterialId, Scene, SceneGraph};
 use crate::{Error, Result};
+use glam::Vec3;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock};
 
@@ -34,9 +35,9 @@ struct Described<'a> {
 }
 
 impl Described<'_> {
-    /// Mist has no surface, and a refractive index no meaning in it.
-    fn is_refractive(&self) -> bool {
-        self.material.ior.is_some() && self.material.density.is_none()
+    /// Whether rays keep in mind that they are inside: solids that refract, and mist.
+    fn is_medium(&self) -> bool {
+        self.material.ior.is_some() || self.material.density.is_some()
     }
 }
 
@@ -84,11 +85,11 @@ pub fn materials_in_use<'a>(
     };
     let of_placement: Vec<usize> = placements.iter().map(&mut number).collect();
     let mut order: Vec<usize> = (0..found.len()).collect();
-    order.sort_by_key(|&number| !found[number].is_refractive());
-    let media = found.iter().filter(|described| described.is_refractive()).count();
+    order.sort_by_key(|&number| !found[number].is_medium());
+    let media = found.iter().filter(|described| described.is_medium()).count();
     if media > MAX_MEDIA as usize {
         return Err(Error::Scene(format!(
-            "the scene uses {media} refractive materials; at most {MAX_MEDIA} are possible"
+            "the scene uses {media} refractive materials and mists; at most {MAX_MEDIA} are possible"
         )));
     }
     // One glossy ray is none: the reflection is a mirror's.
@@ -112,14 +113,19 @@ fn pack<'a>(described: &Described<'a>, medium: u32, spread: f32, atlas: &mut Atl
         emission: material.emission,
         glossy: material.glossy * spread,
         ior: material.ior.unwrap_or(0.0),
-        density: material.density.unwrap_or(0.0),
+        density: 0.0,
         noise_z: 0.0,
-        flags: if material.density.is_some() { MATERIAL_MIST } else { 0 },
+        flags: 0,
         texture: NONE,
         bump: NONE,
-        medium: if described.is_refractive() { medium } else { 0 },
+        medium: if described.is_medium() { medium } else { 0 },
         mist_step: 0.0,
     };
+    if let Some(density) = material.density {
+        packed.density = density;
+        packed.flags |= MATERIAL_MIST;
+        (packed.specular, packed.reflection, packed.ior, packed.emission) = (Vec3::ZERO, 0.0, 0.0, Vec3::ZERO);
+    }
     if let Some(image) = described.texture {
         packed.texture = atlas.add(image)?;
         packed.flags |= MATERIAL_TEXTURE_REPLACES;

@@ -69,9 +69,8 @@ impl<'a> Mists<'a> {
             )));
         };
         let material = &mut self.materials[instance.material as usize];
-        // Nothing of a surface is left.
-        *material =
-            Material { medium: u32::from(number), mist_step: step as f32, reflection: 0.0, ior: 0.0, ..*material };
+        material.medium = u32::from(number);
+        material.mist_step = step as f32;
         instance.flags |= INSTANCE_MIST;
         Ok(())
     }

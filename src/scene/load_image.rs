@@ -29,7 +29,11 @@ pub fn load_image(path: &Path) -> Result<Image> {
     if length > LARGEST_MEMORY {
         return Err(fail(format!("the file has {} MiB, more than {} MiB", length >> 20, LARGEST_MEMORY >> 20)));
     }
-    let bytes = std::fs::read(path).map_err(read)?;
+    let mut bytes = std::fs::read(path).map_err(read)?;
+    // How older Radiance files begin, which the decoder does not know.
+    if bytes.starts_with(b"#?RGBE") {
+        bytes.splice(.."#?RGBE".len(), *b"#?RADIANCE");
+    }
     let format = recognise(path, &bytes).map_err(fail)?;
     // A decoder that panics on a damaged file is no reason to lose the pictures rendered so far.
     let picture = panic::catch_unwind(AssertUnwindSafe(|| decode(&bytes, format)))
@@ -41,10 +45,6 @@ pub fn load_image(path: &Path) -> Result<Image> {
 fn recognise(path: &Path, bytes: &[u8]) -> Result<ImageFormat, String> {
     if bytes.is_empty() {
         return Err("the file is empty".to_owned());
-    }
-    // Files of before Radiance's name stood in the mark.
-    if bytes.starts_with(b"#?RGBE") {
-        return Ok(ImageFormat::Hdr);
     }
     let by_name = || ImageFormat::from_path(path).ok().filter(|format| *format == ImageFormat::Tga);
     match image::guess_format(bytes).ok().or_else(by_name) {

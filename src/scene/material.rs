@@ -40,7 +40,7 @@ impl Default for Material {
         Material {
             diffuse: Vec3::splat(0.5),
             specular: Vec3::ZERO,
-            shininess: 1.0,
+            shininess: 32.0,
             reflection: 0.0,
             glossy: 0.0,
             ior: None,

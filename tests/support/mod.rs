@@ -12,8 +12,8 @@ use gpu_trace::film::Film;
 use gpu_trace::flatten::flatten;
 use gpu_trace::render::{RenderOptions, Rendered, Unattended, render};
 use gpu_trace::scene::{
-    Background, Camera, Conventions, Geometry, Light, LightExtent, Material, Node, NodeId, Sampling, Scene, SceneGraph,
-    Shape, Transfer,
+    Background, Camera, Conventions, Geometry, Light, LightExtent, Material, MaterialId, Node, NodeId, Sampling, Scene,
+    SceneGraph, Shape, Transfer,
 };
 use std::sync::Arc;
 
@@ -55,9 +55,19 @@ impl Stage {
     }
 
     pub fn add(&mut self, shape: Shape, transform: DAffine3, material: Material) -> &mut Self {
+        let material = self.add_material(material);
+        self.add_with(shape, transform, material)
+    }
+
+    pub fn add_material(&mut self, material: Material) -> MaterialId {
+        self.graph.add_material(material)
+    }
+
+    /// Adds a shape whose material others may share.
+    pub fn add_with(&mut self, shape: Shape, transform: DAffine3, material: MaterialId) -> &mut Self {
         let mut node = Node::new("shape", Some(Geometry::new(shape)));
         node.transform = transform;
-        node.material = Some(self.graph.add_material(material));
+        node.material = Some(material);
         let id = self.graph.add_node(node);
         self.graph.node_mut(self.root).children.push(id);
         self

@@ -1,0 +1,63 @@
+-- Bump maps: the same shapes smooth (left) and bumped (right), each bump from a picture's brightness.
+-- Look for: the golf ball's dimples, lit from the same side as the ball; the mortar, which lies deeper than the bricks;
+-- the bark's furrows; the hammered ring, whose mirror image the bumps break up. Outlines stay those of the smooth shape.
+-- 640x360, 9 camera samples a pixel: under ten seconds on two CPU cores.
+
+local scene = gr.node('scene')
+
+local function put(parent, shape, material)
+  shape:set_material(material)
+  parent:add_child(shape)
+  return shape
+end
+
+put(scene, gr.plane('ground'), gr.material({ 0.42, 0.46, 0.44 }, { 0, 0, 0 }, 1))
+
+local weak, strong = { 0.08, 0.08, 0.08 }, { 0.5, 0.5, 0.5 }
+local white, brass = { 0.84, 0.84, 0.82 }, { 0.52, 0.36, 0.10 }
+
+-- The materials of one half: FILE, KD, KS, p, REFL, AREA, IOR, POS; POS 1 takes the colour from the picture too.
+local smooth = {
+  brick = gr.texture_material('assets/brick.png', weak, 10),
+  bark = gr.texture_material('assets/bark.png', weak, 10),
+  ball = gr.material(white, strong, 60),
+  ring = gr.refl_material(brass, { 0.8, 0.7, 0.4 }, 50, 0.35),
+}
+local bumped = {
+  brick = gr.bump_material('assets/brick.png', white, weak, 10, 0, 0, -1, 1),
+  bark = gr.bump_material('assets/bark.png', white, weak, 10, 0, 0, -1, 1),
+  ball = gr.bump_material('assets/dimples.png', white, strong, 60, 0, 0, -1, 2),
+  ring = gr.bump_material('assets/dimples.png', brass, { 0.8, 0.7, 0.4 }, 50, 0.35, 0, -1, 2),
+}
+
+local function half(kind, x)
+  local root = gr.node('half')
+  local wall = put(root, gr.cube('wall'), kind.brick)
+  wall:translate(-0.5, 0, -0.5)
+  wall:scale(1.7, 1.7, 0.5)
+  wall:translate(-0.6, 0, -1.0)
+  local trunk = put(root, gr.cylinder('trunk'), kind.bark)
+  trunk:scale(0.42, 1.15, 0.42)
+  trunk:rotate('y', 60)
+  trunk:translate(0.95, 1.15, -0.75)
+  local ball = put(root, gr.sphere('ball'), kind.ball)
+  ball:scale(0.62, 0.62, 0.62)
+  ball:rotate('x', 18)
+  ball:translate(-0.72, 0.62, 0.75)
+  local ring = put(root, gr.torus('ring', 0.46, 0.2), kind.ring)
+  ring:rotate('x', 66)
+  ring:rotate('y', -16)
+  ring:translate(0.66, 0.58, 0.85)
+  root:translate(x, 0, 0)
+  scene:add_child(root)
+end
+half(smooth, -1.72)
+half(bumped, 1.72)
+
+local key = gr.light({ -6, 6, 5 }, { 0.88, 0.84, 0.76 }, { 1, 0, 0 })
+local fill = gr.light({ 5, 3, 7 }, { 0.18, 0.21, 0.27 }, { 1, 0, 0 })
+
+gr.render(scene, 'bump.png', 640, 360,
+  { 0, 2.2, 7.6 }, { 0, 0.95, 0 }, { 0, 1, 0 }, 30,
+  { 0.22, 0.22, 0.25 }, { key, fill },
+  3) -- AA
