@@ -414,7 +414,7 @@ fn inverse_trigonometry_agrees() {
     assert!(worst[0] < 3e-7 && worst[1] < 4e-7 && worst[2] < 4e-7, "{worst:?}");
 }
 
-/// A cube as a mesh with the image on one pair of faces.
+/// A ball with texture coordinates of its own, an affine map of the points.
 fn mesh_with_coordinates() -> Mesh {
     let mut mesh = bumpy_ball(8);
     mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(p.x * 0.5 + p.z, p.y * 0.7 - 0.2 * p.x)).collect();

@@ -32,7 +32,11 @@ fn radiance(width: u32, height: u32) -> Arc<Image> {
 /// Black and white squares of `cell` texels, `cells` of them along each edge.
 fn checkerboard(cells: u32, cell: u32) -> Arc<Image> {
     let edge = cells * cell;
-    image(edge, edge, |i| if ((i % edge) / cell + i / edge / cell) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] })
+    image(
+        edge,
+        edge,
+        |i| if ((i % edge) / cell + i / edge / cell).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] },
+    )
 }
 
 fn textured(texture: &Arc<Image>) -> Material {
@@ -224,7 +228,7 @@ fn surroundings_agree_and_lie_where_they_should() {
 #[test]
 fn every_level_keeps_the_mean() {
     for image in images() {
-        let (buffers, starts) = packed(&[image.clone()]);
+        let (buffers, starts) = packed(std::slice::from_ref(&image));
         let scene = bindings(&buffers);
         let whole = texture_lookup(&scene, starts[0], Vec2::new(0.3, 0.8), 100.0).as_dvec3();
         let (width, height) = (i64::from(image.width), i64::from(image.height));
