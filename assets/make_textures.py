@@ -336,7 +336,7 @@ def brick():
         colour = ramp([(0.0, (0.52, 0.20, 0.14)), (0.5, (0.67, 0.30, 0.20)), (0.85, (0.74, 0.40, 0.27)),
                        (1.0, (0.60, 0.33, 0.28))], t)
         colour = scaled(colour, 1 + 0.13 * rough.at(x, y) + 0.10 * stain.at(x, y))
-        joint = scaled((0.36, 0.345, 0.325), 1 + 0.12 * mortar.at(x, y))
+        joint = scaled((0.19, 0.18, 0.17), 1 + 0.12 * mortar.at(x, y))
         return mix(joint, colour, step(0.06, 0.115, gap))
     return render(384, 384, shade), 3
 

@@ -54,7 +54,8 @@ wheel:translate(0, 1.95, 0)
 scene:add_child(wheel)
 
 local sun = gr.light({ -5, 9, 8 }, { 0.80, 0.77, 0.70 }, { 1, 0, 0 })
-for name, samples in pairs { off = 1, on = 5 } do
+for _, picture in ipairs { { 'off', 1 }, { 'on', 5 } } do
+  local name, samples = table.unpack(picture)
   gr.render(scene, 'antialiasing-' .. name .. '.png', 240, 200,
     { 0.3, 2.3, 7.4 }, { 0, 1.75, 0 }, { 0, 1, 0 }, 33,
     { 0.32, 0.32, 0.34 }, { sun },

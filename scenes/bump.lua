@@ -11,7 +11,12 @@ local function put(parent, shape, material)
   return shape
 end
 
-put(scene, gr.plane('ground'), gr.material({ 0.42, 0.46, 0.44 }, { 0, 0, 0 }, 1))
+put(scene, gr.plane('ground'), gr.material({ 0.58, 0.62, 0.58 }, { 0, 0, 0 }, 1))
+
+-- A wall behind it all.
+local back = put(scene, gr.plane('back'), gr.material({ 0.46, 0.52, 0.58 }, { 0, 0, 0 }, 1))
+back:rotate('x', 90)
+back:translate(0, 0, -3)
 
 local weak, strong = { 0.08, 0.08, 0.08 }, { 0.5, 0.5, 0.5 }
 local white, brass = { 0.84, 0.84, 0.82 }, { 0.52, 0.36, 0.10 }
@@ -21,13 +26,13 @@ local smooth = {
   brick = gr.texture_material('assets/brick.png', weak, 10),
   bark = gr.texture_material('assets/bark.png', weak, 10),
   ball = gr.material(white, strong, 60),
-  ring = gr.refl_material(brass, { 0.8, 0.7, 0.4 }, 50, 0.35),
+  ring = gr.refl_material(brass, { 0.8, 0.7, 0.4 }, 50, 0.2),
 }
 local bumped = {
   brick = gr.bump_material('assets/brick.png', white, weak, 10, 0, 0, -1, 1),
   bark = gr.bump_material('assets/bark.png', white, weak, 10, 0, 0, -1, 1),
   ball = gr.bump_material('assets/dimples.png', white, strong, 60, 0, 0, -1, 2),
-  ring = gr.bump_material('assets/dimples.png', brass, { 0.8, 0.7, 0.4 }, 50, 0.35, 0, -1, 2),
+  ring = gr.bump_material('assets/dimples.png', brass, { 0.8, 0.7, 0.4 }, 50, 0.2, 0, -1, 2),
 }
 
 local function half(kind, x)
@@ -51,13 +56,13 @@ local function half(kind, x)
   root:translate(x, 0, 0)
   scene:add_child(root)
 end
-half(smooth, -1.72)
-half(bumped, 1.72)
+half(smooth, -1.85)
+half(bumped, 1.85)
 
-local key = gr.light({ -6, 6, 5 }, { 0.88, 0.84, 0.76 }, { 1, 0, 0 })
-local fill = gr.light({ 5, 3, 7 }, { 0.18, 0.21, 0.27 }, { 1, 0, 0 })
+local key = gr.light({ -9, 6, 7 }, { 0.92, 0.88, 0.80 }, { 1, 0, 0 })
+local fill = gr.light({ 5, 3, 7 }, { 0.12, 0.14, 0.18 }, { 1, 0, 0 })
 
 gr.render(scene, 'bump.png', 640, 360,
-  { 0, 2.2, 7.6 }, { 0, 0.95, 0 }, { 0, 1, 0 }, 30,
+  { 0, 2.3, 8.0 }, { 0, 0.98, 0 }, { 0, 1, 0 }, 30,
   { 0.22, 0.22, 0.25 }, { key, fill },
   3) -- AA

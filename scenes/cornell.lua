@@ -2,7 +2,7 @@
 -- gloss, mist and a lens.
 -- Look for: the lamp, which is visible, and the soft shadows that it throws; the globe in glass and the wall of brick;
 -- the hammered pillar; the rough mirror of the tall box; the cloud of mist; the sky in the window.
--- 400x400, 25 camera samples a pixel, each with 4 shadow and 3 glossy rays: under ten seconds on two CPU cores.
+-- 400x400, 25 camera samples a pixel, each with 4 shadow and 3 glossy rays: some twenty seconds on two CPU cores.
 
 -- A mesh from a table alone would mean the transform order of old scenes.
 gr.conventions { transforms = 'pre' }
@@ -72,7 +72,7 @@ local glass = gr.material {
 }
 put(scene, gr.nh_sphere('ball', { 0.85, 1.27, 0.05 }, 0.52), glass)
 
--- A globe, an orange and a golden ring in front.
+-- A globe, a gourd and a golden ring in front.
 local globe = put(scene, gr.sphere('globe'), gr.material {
   texture = 'assets/earth.png', specular = { 0.3, 0.3, 0.3 }, shininess = 40,
 })
@@ -80,11 +80,11 @@ globe:scale(0.42, 0.42, 0.42)
 globe:rotate('y', 120)
 globe:rotate('z', -23)
 globe:translate(-1.15, 0.42, 0.75)
-local orange = put(scene, gr.sphere('orange'), gr.material {
+local gourd = put(scene, gr.sphere('gourd'), gr.material {
   diffuse = { 0.95, 0.48, 0.06 }, specular = { 0.3, 0.3, 0.3 }, shininess = 40, noise = 1.5,
 })
-orange:scale(0.24, 0.24, 0.24)
-orange:translate(0.1, 0.24, 1.15)
+gourd:scale(0.24, 0.24, 0.24)
+gourd:translate(0.1, 0.24, 1.15)
 local ring = put(scene, gr.torus('ring', 0.3, 0.11), gr.material {
   diffuse = { 0.56, 0.38, 0.08 }, specular = { 0.9, 0.75, 0.4 }, shininess = 50, reflection = 0.35,
   bump = 'assets/dimples.png',

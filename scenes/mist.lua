@@ -38,8 +38,8 @@ end
 -- The layer of ground mist is a flat box, 1.1 high.
 local layer = put(scene, gr.cube('layer'), gr.volumetric_material({ 0.72, 0.76, 0.82 }, { 0, 0, 0 }, 1, 0.10))
 layer:translate(-0.5, 0, -1)
-layer:scale(60, 1.1, 42)
-layer:translate(0, 0.01, 3.2)
+layer:scale(60, 1.1, 47)
+layer:translate(0, 0.01, 8.2)
 -- A second, thin one fills the whole avenue behind the first columns, over and in the first.
 local haze = put(scene, gr.cube('haze'), gr.volumetric_material({ 0.66, 0.72, 0.82 }, { 0, 0, 0 }, 1, 0.035))
 haze:translate(-0.5, 0, -1)

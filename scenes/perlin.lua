@@ -1,6 +1,6 @@
 -- Perlin noise, as bumps and as numbers: a harbour at the golden hour.
--- Look for: waves on a plane that is flat, and the sky broken in them; oranges, a lemon and a walnut, whose peel is noise
--- at different heights of the third axis; the basalt steps behind, whose heights come from gr.noise.
+-- Look for: waves on a plane that is flat, and the sky broken in them; five gourds, whose skins are slices of one noise at
+-- different heights of the third axis; the basalt steps behind, whose heights come from gr.noise.
 -- 640x360, 9 camera samples a pixel: under ten seconds on two CPU cores.
 
 local scene = gr.node('scene')
@@ -37,7 +37,7 @@ for row = 0, 9 do
   end
 end
 
--- A jetty of planks, and a bowl of fruit on it.
+-- A jetty of planks, and gourds on it.
 local plank = gr.cube('plank')
 plank:set_material(gr.texture_material('assets/floor.png', { 0.1, 0.1, 0.1 }, 10))
 plank:translate(-0.5, -1, 0)
@@ -49,20 +49,20 @@ for i = 0, 4 do
   scene:add_child(place)
 end
 
-local function fruit(colour, shine, z, radius, stretch, x, depth, turn)
-  local ball = put(scene, gr.sphere('fruit'),
+local function gourd(colour, shine, z, radius, stretch, x, depth, turn)
+  local ball = put(scene, gr.sphere('gourd'),
     gr.perlin_bump_material(colour, { shine, shine, shine }, 40, 0, 0, -1, z))
   ball:scale(radius * stretch, radius, radius)
   ball:rotate('y', turn)
   ball:translate(x, 0.34 + radius, depth)
 end
-fruit({ 0.95, 0.48, 0.06 }, 0.35, 0.0, 0.44, 1, -0.95, 1.2, 0)
-fruit({ 0.92, 0.42, 0.05 }, 0.35, 5.5, 0.42, 1, -0.12, 0.85, 80)
-fruit({ 0.95, 0.80, 0.14 }, 0.40, 2.5, 0.32, 1.3, 0.62, 1.5, 25)
-fruit({ 0.42, 0.27, 0.15 }, 0.12, 9.0, 0.20, 1.1, -0.22, 1.95, 60)
-fruit({ 0.55, 0.68, 0.16 }, 0.35, 7.0, 0.29, 1.15, 1.35, 0.95, -20)
+gourd({ 0.95, 0.48, 0.06 }, 0.35, 0.0, 0.44, 1, -0.95, 1.2, 0)
+gourd({ 0.92, 0.42, 0.05 }, 0.35, 5.5, 0.42, 1, -0.12, 0.85, 80)
+gourd({ 0.95, 0.80, 0.14 }, 0.40, 2.5, 0.32, 1.3, 0.62, 1.5, 25)
+gourd({ 0.42, 0.27, 0.15 }, 0.12, 9.0, 0.20, 1.1, -0.22, 1.95, 60)
+gourd({ 0.55, 0.68, 0.16 }, 0.35, 7.0, 0.29, 1.15, 1.35, 0.95, -20)
 
-gr.background { bottom = { 1.0, 0.72, 0.42 }, top = { 0.26, 0.42, 0.66 } }
+gr.background { bottom = { 1.7, 0.98, 0.46 }, top = { 0.24, 0.42, 0.74 } }
 local sun = gr.light({ -14, 9, 8 }, { 0.95, 0.78, 0.55 }, { 1, 0, 0 })
 local sky = gr.light({ 6, 10, 6 }, { 0.18, 0.23, 0.32 }, { 1, 0, 0 })
 
