@@ -42,7 +42,7 @@ pub fn free_flight(density: f32, xi: f32) -> f32 {
     if density <= 0.0 {
         return T_INFINITY;
     }
-    -0.693_147_2 * log2_poly(1.0 - xi) / density
+    -std::f32::consts::LN_2 * log2_poly(1.0 - xi) / density
 }
 
 /// Which of the mists scatters, in proportion to their densities.
