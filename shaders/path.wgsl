@@ -284,7 +284,7 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
             if (flight.going) {
                 let step = materials[surface.material].mist_step;
                 ray.mists = mist_cross(ray.mists, number, surface.entering);
-                flight.leg_origin = surface.point + step * direction;
+                flight.leg_origin = beyond_boundary(surface.point, origin, direction, met.t, step);
                 flight.left -= met.t + step;
                 flight.leg++;
                 if (flight.leg > MIST_CROSSINGS) {

@@ -40,7 +40,7 @@ fn floor_stage(extent: LightExtent, visible: bool) -> Stage {
     stage.scene.camera.eye = DVec3::new(0.0, 2.0, 0.0);
     stage.scene.camera.forward = DVec3::new(0.0, -0.7, -1.0);
     stage.scene.camera.fov = 40.0;
-    stage.scene.sampling.shadow = 256;
+    stage.scene.sampling.shadow = 2048;
     stage.add(Shape::Plane, DAffine3::IDENTITY, paint(1.0, 1.0, 1.0));
     stage.add_light(AT, Vec3::ONE, extent);
     stage.scene.lights[0].falloff = Vec3::new(0.0, 0.1, 0.1);

@@ -18,6 +18,14 @@ fn mist_cross(mists: vec2<u32>, number: u32, entering: bool) -> vec2<u32> {
     return media_enter(mists, number);
 }
 
+// Where a ray goes on that met a boundary at t and `point`, which is more exact than t. A boundary that is met again
+// just after it was crossed is one whose intersection is less exact than the step: there the ray is moved on from where
+// it was, lest `point` takes it back.
+fn beyond_boundary(point: vec3<f32>, origin: vec3<f32>, direction: vec3<f32>, t: f32, step: f32) -> vec3<f32> {
+    let along = dot(point - origin, direction);
+    return select(origin + (t + 4.0 * step) * direction, point + step * direction, along > step);
+}
+
 // Scattering events a world unit of one mist; number 0 is none.
 fn mist_density(number: u32) -> f32 {
     if (number == 0u) {

@@ -7,7 +7,7 @@ use crate::cpu::geometry::instance::surface_at;
 use crate::cpu::math::offset::offset_ray_origin;
 use crate::cpu::path::T_INFINITY;
 use crate::cpu::shading::material::media_enter;
-use crate::cpu::shading::medium::mist_cross;
+use crate::cpu::shading::medium::{beyond_boundary, mist_cross};
 use crate::renderer::Tally;
 use glam::{UVec2, Vec3};
 
@@ -20,7 +20,7 @@ const PROBE: Vec3 = Vec3::new(0.267_261, 0.534_522, -0.801_784);
 /// having entered it holds the point, the innermost first.
 pub fn media_at(scene: &Bindings, point: Vec3) -> UVec2 {
     let trace = |origin: Vec3, tally: &mut Tally| scene_intersect(scene, origin, PROBE, T_INFINITY, tally);
-    let onward = |surface: &Surface| offset_ray_origin(surface.point, -surface.geometric_normal);
+    let onward = |surface: &Surface, _, _| offset_ray_origin(surface.point, -surface.geometric_normal);
     // The list is built from its innermost end: the outermost medium is entered first.
     surrounding(scene, point, trace, onward).into_iter().take(4).rev().fold(UVec2::ZERO, media_enter)
 }
@@ -28,18 +28,20 @@ pub fn media_at(scene: &Bindings, point: Vec3) -> UVec2 {
 /// The mists around `point` (world space), likewise.
 pub fn mists_at(scene: &Bindings, point: Vec3) -> UVec2 {
     let trace = |origin: Vec3, tally: &mut Tally| mist_intersect(scene, origin, PROBE, T_INFINITY, tally);
-    let onward = |surface: &Surface| surface.point + scene.materials[surface.material as usize].mist_step * PROBE;
+    let onward = |surface: &Surface, origin, t| {
+        beyond_boundary(surface.point, origin, PROBE, t, scene.materials[surface.material as usize].mist_step)
+    };
     let around = surrounding(scene, point, trace, onward);
     around.into_iter().take(4).rev().fold(UVec2::ZERO, |mists, number| mist_cross(mists, number, true))
 }
 
 /// The numbers of the media that hold `point`, the innermost first, from the boundaries that `trace` finds along the
-/// probe; `onward` is the origin beyond one.
+/// probe; `onward` gives the origin beyond one from where the last was and t.
 fn surrounding(
     scene: &Bindings,
     point: Vec3,
     trace: impl Fn(Vec3, &mut Tally) -> Hit,
-    onward: impl Fn(&Surface) -> Vec3,
+    onward: impl Fn(&Surface, Vec3, f32) -> Vec3,
 ) -> Vec<u32> {
     let mut entered = vec![0_u32; scene.materials.len() + 1];
     let mut around = Vec::new();
@@ -60,7 +62,7 @@ fn surrounding(
                 (false, _) => *count -= 1,
             }
         }
-        origin = onward(&surface);
+        origin = onward(&surface, origin, hit.t);
     }
     around
 }

@@ -16,7 +16,7 @@ use crate::cpu::shading::material::{
     fresnel_schlick, media_contains, media_enter, media_index, media_leave, refract_direction,
 };
 use crate::cpu::shading::medium::{
-    MIST_CROSSINGS, choose_mist, free_flight, mist_cross, mist_density, mist_event, mists_density,
+    MIST_CROSSINGS, beyond_boundary, choose_mist, free_flight, mist_cross, mist_density, mist_event, mists_density,
 };
 use crate::layout::{FRAME_TRANSPARENT, Material, RAY_REFLECTED, RAY_REFRACTED, RAY_SHADOW, STATUS_LOOP_BOUND};
 use crate::renderer::Tally;
@@ -215,7 +215,7 @@ fn fly(scene: &Bindings, ray: &Ray, hit: Hit, tally: &mut Tally) -> Arrival {
             }
         }
         mists = mist_cross(mists, number, surface.entering);
-        origin = surface.point + material.mist_step * ray.direction;
+        origin = beyond_boundary(surface.point, origin, ray.direction, met.t, material.mist_step);
         left -= met.t + material.mist_step;
     }
     tally.flags |= STATUS_LOOP_BOUND;

@@ -21,6 +21,14 @@ pub fn mist_cross(mists: UVec2, number: u32, entering: bool) -> UVec2 {
     media_enter(mists, number)
 }
 
+/// Where a ray goes on that met a boundary at t and `point`, which is more exact than t. A boundary that is met again
+/// just after it was crossed is one whose intersection is less exact than the step: there the ray is moved on from where
+/// it was, lest `point` takes it back.
+pub fn beyond_boundary(point: Vec3, origin: Vec3, direction: Vec3, t: f32, step: f32) -> Vec3 {
+    let along = (point - origin).dot(direction);
+    if along > step { point + step * direction } else { origin + (t + 4.0 * step) * direction }
+}
+
 /// Scattering events a world unit of one mist; number 0 is none.
 pub fn mist_density(scene: &Bindings, number: u32) -> f32 {
     if number == 0 {
