@@ -43,7 +43,7 @@ pub fn compare(a: &Film, b: &Film, scene: &Scene) -> Comparison {
     compare_images(&resolve(a), &resolve(b)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The bounds of issue and design: FLIP at most 0.002, at most 0.1 % of the pixels off by more than 2/255.
+/// What counts as the same picture: FLIP at most 0.002, at most 0.1 % of the pixels off by more than 2/255.
 pub fn agrees(comparison: &Comparison) -> bool {
     comparison.flip_mean <= 0.002 && comparison.differing_share <= 0.001
 }

@@ -24,7 +24,7 @@ fn keep_above(direction: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
 }
 
 // A direction through the square of edge `edge` that stands at distance 1 across the unit direction r
-// (Cook, Porter, Carpenter 1984, section 3; the square as in SCENE_API). Unit length.
+// (Cook, Porter, Carpenter 1984, section 3). Unit length.
 fn sample_glossy(r: vec3<f32>, edge: f32, xi: vec2<f32>) -> vec3<f32> {
     let basis = orthonormal_basis(r);
     return unit_vector(r + edge * (xi.x - 0.5) * basis.tangent + edge * (xi.y - 0.5) * basis.bitangent);

@@ -37,7 +37,7 @@ fn bump_slope(material: Material, uv: vec2<f32>, footprint: f32) -> vec2<f32> {
 
 // The unit normal of the surface after its points have moved along the unit normal n by heights that change by
 // `slope` = (Bu, Bv): n + Bu (n x Pv) - Bv (n x Pu) where Pu, Pv, n are right-handed, and the opposite tilt where they
-// are left-handed, so that greater heights rise on n's side. Blinn's division by |Pu x Pv| is left out (SCENE_API), so
+// are left-handed, so that greater heights rise on n's side. Blinn's division by |Pu x Pv| is left out, so
 // that slopes have no unit.
 fn tilted_normal(n: vec3<f32>, dpdu: vec3<f32>, dpdv: vec3<f32>, slope: vec2<f32>) -> vec3<f32> {
     let c = cross(dpdu, dpdv);

@@ -45,7 +45,7 @@ pub fn bump_slope(scene: &Bindings, material: &Material, uv: Vec2, footprint: f3
 
 /// The unit normal of the surface after its points have moved along the unit normal n by heights that change by
 /// `slope` = (Bu, Bv): n + Bu (n × Pv) − Bv (n × Pu) where Pu, Pv, n are right-handed, and the opposite tilt where they
-/// are left-handed, so that greater heights rise on n's side. Blinn's division by |Pu × Pv| is left out (SCENE_API), so
+/// are left-handed, so that greater heights rise on n's side. Blinn's division by |Pu × Pv| is left out, so
 /// that slopes have no unit.
 pub fn tilted_normal(n: Vec3, dpdu: Vec3, dpdv: Vec3, slope: Vec2) -> Vec3 {
     let c = dpdu.cross(dpdv);
