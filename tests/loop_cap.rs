@@ -61,6 +61,41 @@ fn work_beyond_the_cap_renders_right() {
     }
 }
 
+/// A single ray, without lights or depth, that passes through the holes of so many rings that its one walk through the
+/// hierarchy is beyond the cap. Nothing is left undone that would show it: only the loop at the end of the invocation
+/// can tell that the wall behind was lost. There is nothing to divide, so the answer is the picture or an error.
+#[test]
+fn one_ray_beyond_the_cap_is_right_or_an_error() {
+    let mut stage = Stage::new(8, 8);
+    stage.scene.camera.fov = 5.0;
+    stage.scene.ambient = Vec3::ONE;
+    stage.scene.sampling.max_depth = 0;
+    let facing = DAffine3::from_translation(DVec3::NEG_Z * 5.0) * DAffine3::from_rotation_x(1.57);
+    for i in 0..30_000 {
+        let ring = Shape::Torus { major: 1.0 + f64::from(i) * 1e-4, minor: 0.02 };
+        stage.add(ring, facing, paint(0.0, 0.0, 1.0));
+    }
+    stage.add_box(DVec3::new(-9.0, -9.0, -20.0), DVec3::new(9.0, 9.0, -19.0), paint(1.0, 0.5, 0.0));
+    let buffers = Arc::new(flatten(&stage.finish()).unwrap_or_else(|error| panic!("{error}")));
+    let picture = |choice: DeviceChoice| {
+        let (mut renderer, _) = open_renderer(&choice, false).unwrap_or_else(|error| panic!("{error}"));
+        render(buffers.clone(), renderer.as_mut(), &RenderOptions::whole(&buffers), &mut Unattended)
+    };
+    let cpu = picture(DeviceChoice::Cpu).unwrap_or_else(|error| panic!("{error}"));
+    assert!(cpu.film.radiance(4, 4)[0] > 0.99, "the wall is not seen through the rings");
+    let old = std::env::var("GPU_TRACE_EXPECT_DRIVER").is_ok_and(|driver| driver.starts_with("22."));
+    match picture(DeviceChoice::Gpu) {
+        Ok(gpu) => {
+            assert!(gpu.film == cpu.film, "the GPU's picture is wrong, and nothing was said");
+            assert!(!old, "the scene does not reach the old driver's cap");
+        }
+        Err(error) => {
+            println!("{error}");
+            assert!(error.to_string().contains("loop turns"), "{error}");
+        }
+    }
+}
+
 /// The probe that every invocation ends with is what notices: a kernel whose loops are cut short must say so.
 #[test]
 fn the_driver_is_known_by_its_loop_cap() {
