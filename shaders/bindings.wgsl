@@ -26,4 +26,5 @@ override HAS_LENS: bool = true;
 override HAS_TEXTURE: bool = true;
 override HAS_BUMP: bool = true;
 override HAS_MIST: bool = true;
+override HAS_SHADOWLESS: bool = true;
 override HAS_BACKGROUND_IMAGE: bool = true;

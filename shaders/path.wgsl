@@ -240,7 +240,8 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
             origin = ray.origin;
             direction = ray.direction;
         }
-        let met = traverse(origin, direction, t_max, lighting, select(0u, INSTANCE_MIST, flying));
+        let mask = select(select(INSTANCE_SEEN, INSTANCE_MIST, flying), INSTANCE_SHADES, lighting);
+        let met = traverse(origin, direction, t_max, lighting, mask);
         if (lighting) {
             radiance += select(ray.weight * light.radiance, vec3<f32>(0.0), met.t > 0.0);
             continue;

@@ -198,7 +198,10 @@ const MATERIAL_TEXTURE_REPLACES: u32 = 1u;  // the diffuse colour comes from `te
 const MATERIAL_NOISE_BUMP: u32 = 2u;        // the bump is Perlin noise at height noise_z, in place of an image
 const MATERIAL_MIST: u32 = 4u;              // a volume of `density`, not a surface
 
-const INSTANCE_MIST: u32 = 1u;              // shadow rays pass
+// Which rays meet an instance.
+const INSTANCE_SEEN: u32 = 1u;              // those of the tree
+const INSTANCE_SHADES: u32 = 2u;            // shadow rays
+const INSTANCE_MIST: u32 = 4u;              // the search for boundaries of mist, and no others
 
 const LIGHT_POINT: u32 = 0u;
 const LIGHT_PARALLELOGRAM: u32 = 1u;

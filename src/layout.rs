@@ -178,7 +178,9 @@ pub const MATERIAL_TEXTURE_REPLACES: u32 = 1;
 pub const MATERIAL_NOISE_BUMP: u32 = 2;
 pub const MATERIAL_MIST: u32 = 4;
 
-pub const INSTANCE_MIST: u32 = 1;
+pub const INSTANCE_SEEN: u32 = 1;
+pub const INSTANCE_SHADES: u32 = 2;
+pub const INSTANCE_MIST: u32 = 4;
 
 pub const LIGHT_POINT: u32 = 0;
 pub const LIGHT_PARALLELOGRAM: u32 = 1;

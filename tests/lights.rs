@@ -200,3 +200,45 @@ fn visible_lights_shade_other_lights() {
         assert_picture(build, 1e-5, |_, _, _| Some(DVec3::X * red));
     }
 }
+
+/// The floor under a point light with a roof between them that the camera doesn't see.
+fn roofed_stage(roof: &[(Shape, DAffine3)], casts_shadow: bool) -> Stage {
+    let mut stage = floor_stage(LightExtent::Sphere { radius: 0.1 }, false);
+    stage.scene.sampling.shadow = 1;
+    for (shape, place) in roof {
+        stage.add(shape.clone(), *place, Material { casts_shadow, ..paint(0.5, 0.5, 0.5) });
+    }
+    stage
+}
+
+#[test]
+fn shadow_rays_pass_what_casts_no_shadow() {
+    let at = |scale: f64| {
+        DAffine3::from_translation(DVec3::new(0.7, 2.6, -4.5)) * DAffine3::from_scale(DVec3::new(scale, 0.1, scale))
+    };
+    let roofs = [(Shape::Plane, at(1.0)), (Shape::Sphere, at(30.0)), (Shape::Cylinder, at(30.0))];
+    for device in &BOTH {
+        let open = roofed_stage(&[], true).film(device);
+        assert!(open.pixels.iter().all(|pixel| pixel[0] > 0));
+        for roof in roofs.chunks(1) {
+            assert_eq!(roofed_stage(roof, false).film(device), open, "{device:?}: {roof:?}");
+            let dark = roofed_stage(roof, true).film(device);
+            assert!(dark.pixels.iter().all(|pixel| pixel[0] == 0), "{device:?}: {roof:?}");
+        }
+        // One that casts a shadow beside those that don't.
+        let mut mixed = roofed_stage(&roofs[..2], false);
+        mixed.add(roofs[2].0.clone(), roofs[2].1, paint(0.5, 0.5, 0.5));
+        assert!(mixed.film(device).pixels.iter().all(|pixel| pixel[0] == 0), "{device:?}");
+    }
+}
+
+#[test]
+fn what_casts_no_shadow_is_seen() {
+    let material = Material { casts_shadow: false, emission: Vec3::ONE, ..paint(0.0, 0.0, 0.0) };
+    for device in &BOTH {
+        let mut stage = Stage::new(8, 8);
+        (stage.scene.background.bottom, stage.scene.background.top) = (Vec3::ZERO, Vec3::ZERO);
+        stage.add(Shape::Sphere, DAffine3::from_translation(DVec3::new(0.0, 0.0, -2.0)), material.clone());
+        assert_eq!(stage.film(device).radiance(4, 4)[0], 1.0, "{device:?}");
+    }
+}

@@ -17,12 +17,12 @@ const MIN_DIRECTION: f32 = 8.8817842e-16;
 
 // The hit of a surface nearest to the origin, with t in (0, t_max), world space; mist is no surface.
 fn scene_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> Hit {
-    return traverse(origin, direction, t_max, false, 0u);
+    return traverse(origin, direction, t_max, false, INSTANCE_SEEN);
 }
 
-// Whether any surface lies in (0, t_max) along the ray.
+// Whether any surface that casts shadows lies in (0, t_max) along the ray.
 fn scene_occluded(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> bool {
-    return traverse(origin, direction, t_max, true, 0u).t > 0.0;
+    return traverse(origin, direction, t_max, true, INSTANCE_SHADES).t > 0.0;
 }
 
 // The nearest boundary of a mist with t in (0, t_max).
@@ -30,12 +30,15 @@ fn mist_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> Hit {
     return traverse(origin, direction, t_max, false, INSTANCE_MIST);
 }
 
-// Meets the surfaces (kind 0) or the mists (kind INSTANCE_MIST); with any_hit, the first that comes.
-fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, kind: u32) -> Hit {
+// Meets the instances whose flags share a bit with the mask; with any_hit, the first that comes.
+fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, mask: u32) -> Hit {
     var hit = Hit(MISS, NONE, 0u, 0.0, 0.0);
     var nearest = t_max;
-    if HAS_PLANE && kind == 0u {
+    if HAS_PLANE {
         for (var i = 0u; i < frame.plane_count; i++) {
+            if (HAS_MIST || HAS_SHADOWLESS) && (instances[i].flags & mask) == 0u {
+                continue;
+            }
             let object_origin = transform_point(instances[i].object_from_world, origin);
             let object_direction = transform_vector(instances[i].object_from_world, direction);
             let plane = plane_intersect(object_origin, object_direction, nearest);
@@ -101,7 +104,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
                 }
                 continue;
             }
-            if HAS_MIST && (instances[index].flags & INSTANCE_MIST) != kind {
+            if (HAS_MIST || HAS_SHADOWLESS) && (instances[index].flags & mask) == 0u {
                 continue;
             }
             let object_origin = transform_point(instances[index].object_from_world, origin);

@@ -29,6 +29,8 @@ pub struct FeatureSet {
     pub bump: bool,
     /// A volume of mist.
     pub mist: bool,
+    /// A surface that casts no shadow.
+    pub shadowless: bool,
     /// A picture around the scene.
     pub background_image: bool,
 }
@@ -50,6 +52,7 @@ impl FeatureSet {
         texture: false,
         bump: false,
         mist: false,
+        shadowless: false,
         background_image: false,
     };
 
@@ -69,6 +72,7 @@ impl FeatureSet {
         texture: true,
         bump: true,
         mist: true,
+        shadowless: true,
         background_image: true,
     };
 
@@ -100,6 +104,10 @@ impl FeatureSet {
                 .iter()
                 .any(|material| material.bump != layout::NONE || material.flags & layout::MATERIAL_NOISE_BUMP != 0),
             mist: materials.iter().any(|material| material.flags & layout::MATERIAL_MIST != 0),
+            shadowless: buffers
+                .instances
+                .iter()
+                .any(|instance| instance.flags & (layout::INSTANCE_SHADES | layout::INSTANCE_MIST) == 0),
             background_image: buffers.frame.background_image != layout::NONE,
         }
     }
@@ -122,6 +130,7 @@ impl FeatureSet {
             ("HAS_TEXTURE", self.texture),
             ("HAS_BUMP", self.bump),
             ("HAS_MIST", self.mist),
+            ("HAS_SHADOWLESS", self.shadowless),
             ("HAS_BACKGROUND_IMAGE", self.background_image),
         ]
     }

@@ -6,8 +6,8 @@ use super::mesh::Meshes;
 use super::mist::Mists;
 use super::walk::Placement;
 use crate::layout::{
-    AffineRows, Instance, NONE, Node, SHAPE_CONE, SHAPE_CUBE, SHAPE_CYLINDER, SHAPE_MESH, SHAPE_PLANE, SHAPE_SPHERE,
-    SHAPE_TORUS,
+    AffineRows, INSTANCE_SEEN, INSTANCE_SHADES, Instance, NONE, Node, SHAPE_CONE, SHAPE_CUBE, SHAPE_CYLINDER,
+    SHAPE_MESH, SHAPE_PLANE, SHAPE_SPHERE, SHAPE_TORUS,
 };
 use crate::scene::{SceneGraph, Shape};
 use crate::{Error, Result};
@@ -61,6 +61,9 @@ pub fn build(
         }
         let mut instance = pack(&placement.geometry.shape, &world_from_object, name)?;
         instance.material = material;
+        if !casts_shadow(graph, placement) {
+            instance.flags &= !INSTANCE_SHADES;
+        }
         if let Some(step) = mist_step {
             mists.mark(&mut instance, step)?;
         }
@@ -93,6 +96,10 @@ pub fn build(
         boxes.push(bounds.padded());
     }
     Ok(ordered(planes, bounded, &boxes, meshes, instanced_triangles))
+}
+
+fn casts_shadow(graph: &SceneGraph, placement: &Placement) -> bool {
+    placement.material.is_none_or(|id| graph.materials[id.0 as usize].casts_shadow)
 }
 
 /// Planes first, then the others in the order of the leaves; the roots of meshes where `flatten` will put them.
@@ -151,7 +158,7 @@ fn pack(shape: &Shape, world_from_object: &DAffine3, name: &str) -> Result<Insta
         shape,
         material: 0,
         root: NONE,
-        flags: 0,
+        flags: INSTANCE_SEEN | INSTANCE_SHADES,
         world_from_object: rows(world_from_object),
         parameters,
     };

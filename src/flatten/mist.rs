@@ -71,7 +71,7 @@ impl<'a> Mists<'a> {
         let material = &mut self.materials[instance.material as usize];
         material.medium = u32::from(number);
         material.mist_step = step as f32;
-        instance.flags |= INSTANCE_MIST;
+        instance.flags = INSTANCE_MIST;
         Ok(())
     }
 }

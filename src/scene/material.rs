@@ -24,6 +24,8 @@ pub struct Material {
     pub density: Option<f32>,
     /// Radiance that the surface sends out by itself.
     pub emission: Vec3,
+    /// Whether shadow rays stop at the surface.
+    pub casts_shadow: bool,
 }
 
 /// The height field of a bump map (Blinn 1978).
@@ -48,6 +50,7 @@ impl Default for Material {
             bump: None,
             density: None,
             emission: Vec3::ZERO,
+            casts_shadow: true,
         }
     }
 }

@@ -56,6 +56,7 @@ const SHINY: Material = Material {
     bump: None,
     density: None,
     emission: Vec3::ZERO,
+    casts_shadow: true,
 };
 
 #[test]

@@ -118,8 +118,9 @@ fn both_forms_of_material_are_the_same() {
     assert_eq!(materials[5].bump, Some(Bump::Noise { z: 3.0 }));
     assert!(materials.iter().step_by(2).zip(materials.iter().step_by(2).skip(1)).all(|(a, b)| a != b));
 
-    let usual = only_scene(&format!("gr.material{{}} gr.material{{emission={{1,2,3}}}} {render}")).graph;
-    let glowing = Material { emission: Vec3::new(1.0, 2.0, 3.0), ..Material::default() };
+    let usual =
+        only_scene(&format!("gr.material{{}} gr.material{{emission={{1,2,3}}, casts_shadow=false}} {render}")).graph;
+    let glowing = Material { emission: Vec3::new(1.0, 2.0, 3.0), casts_shadow: false, ..Material::default() };
     assert_eq!(usual.materials, [Material::default(), glowing]);
 }
 
@@ -132,7 +133,7 @@ fn bad_keys_and_values_are_named() {
         (
             "gr.material{wavelength=3}",
             "gr.material: unknown key 'wavelength'; known are 'diffuse', 'specular', 'shininess', 'reflection', 'glossy', \
-             'ior', 'texture', 'bump', 'noise', 'density', 'emission'",
+             'ior', 'texture', 'bump', 'noise', 'density', 'emission', 'casts_shadow'",
         ),
         (
             "gr.material{shininess='hard'}",

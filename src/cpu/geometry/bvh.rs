@@ -7,7 +7,9 @@ use super::instance::{instance_intersect, transform_point, transform_vector};
 use super::plane::plane_intersect;
 use super::triangle::{TriangleRay, triangle_intersect, triangle_ray};
 use crate::cpu::bindings::Bindings;
-use crate::layout::{INSTANCE_MIST, NONE, Node, SHAPE_MESH, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
+use crate::layout::{
+    INSTANCE_MIST, INSTANCE_SEEN, INSTANCE_SHADES, NONE, Node, SHAPE_MESH, STATUS_LOOP_BOUND, STATUS_STACK_FULL,
+};
 use crate::renderer::Tally;
 use glam::{UVec2, Vec3};
 
@@ -21,12 +23,12 @@ const MIN_DIRECTION: f32 = 8.881_784e-16;
 /// The hit of a surface nearest to the origin, with t in (0, t_max), world space; t is [`MISS`] where there is none.
 /// Mist is no surface.
 pub fn scene_intersect(scene: &Bindings, origin: Vec3, direction: Vec3, t_max: f32, tally: &mut Tally) -> Hit {
-    traverse::<false, 0>(scene, origin, direction, t_max, tally)
+    traverse::<false, INSTANCE_SEEN>(scene, origin, direction, t_max, tally)
 }
 
-/// Whether any surface lies in (0, t_max) along the ray.
+/// Whether any surface that casts shadows lies in (0, t_max) along the ray.
 pub fn scene_occluded(scene: &Bindings, origin: Vec3, direction: Vec3, t_max: f32, tally: &mut Tally) -> bool {
-    traverse::<true, 0>(scene, origin, direction, t_max, tally).t > 0.0
+    traverse::<true, INSTANCE_SHADES>(scene, origin, direction, t_max, tally).t > 0.0
 }
 
 /// The nearest boundary of a mist with t in (0, t_max).
@@ -59,8 +61,8 @@ impl Stack {
     }
 }
 
-/// Meets the surfaces (kind 0) or the mists (kind [`INSTANCE_MIST`]); with `ANY_HIT`, the first that comes.
-fn traverse<const ANY_HIT: bool, const KIND: u32>(
+/// Meets the instances whose flags share a bit with `MASK`; with `ANY_HIT`, the first that comes.
+fn traverse<const ANY_HIT: bool, const MASK: u32>(
     scene: &Bindings,
     origin: Vec3,
     direction: Vec3,
@@ -69,8 +71,10 @@ fn traverse<const ANY_HIT: bool, const KIND: u32>(
 ) -> Hit {
     let mut hit = Hit { t: MISS, instance: NONE, primitive: 0, b1: 0.0, b2: 0.0 };
     let mut nearest = t_max;
-    let plane_count = if KIND == 0 { scene.frame.plane_count } else { 0 };
-    for (i, instance) in (0..plane_count).zip(scene.instances) {
+    for (i, instance) in (0..scene.frame.plane_count).zip(scene.instances) {
+        if instance.flags & MASK == 0 {
+            continue;
+        }
         let object_origin = transform_point(&instance.object_from_world, origin);
         let object_direction = transform_vector(&instance.object_from_world, direction);
         let plane = plane_intersect(object_origin, object_direction, nearest);
@@ -134,7 +138,7 @@ fn traverse<const ANY_HIT: bool, const KIND: u32>(
                 continue;
             }
             let instance = &scene.instances[index as usize];
-            if instance.flags & INSTANCE_MIST != KIND {
+            if instance.flags & MASK == 0 {
                 continue;
             }
             let object_origin = transform_point(&instance.object_from_world, origin);

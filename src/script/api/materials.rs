@@ -28,10 +28,11 @@ const KEYS: &[&str] = &[
     "noise",
     "density",
     "emission",
+    "casts_shadow",
 ];
 
 /// What a volume has no surface for.
-const SURFACE_KEYS: &[&str] = &["reflection", "glossy", "ior", "bump", "noise", "emission"];
+const SURFACE_KEYS: &[&str] = &["reflection", "glossy", "ior", "bump", "noise", "emission", "casts_shadow"];
 
 /// `gr.material({kd}, {ks}, shininess)`, Phong's; or `gr.material{…}` with any of [`KEYS`].
 fn material(call: &Call) -> Outcome<Value> {
@@ -101,6 +102,7 @@ fn build(call: &Call, fields: &Fields) -> Outcome<Material> {
         bump: image.or(noise.map(|z| Bump::Noise { z: z as f32 })),
         density: fields.get("density").optional(density)?,
         emission: fields.get("emission").or(plain.emission, Given::colour)?,
+        casts_shadow: fields.get("casts_shadow").or(plain.casts_shadow, Given::flag)?,
     })
 }
 
