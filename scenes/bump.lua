@@ -1,6 +1,7 @@
--- Bump maps: the same shapes smooth (left) and bumped (right), each bump from a picture's brightness.
--- Look for: the golf ball's dimples, lit from the same side as the ball; the mortar, which lies deeper than the bricks;
--- the bark's furrows; the hammered ring, whose mirror image the bumps break up. Outlines stay those of the smooth shape.
+-- Bump maps: the same shapes in the same colours, smooth (left) and bumped (right), each bump from a picture's brightness.
+-- Look for: a block of clay that becomes a wall, whose mortar lies deeper than the bricks; a post that becomes a trunk
+-- with furrows; the golf ball's dimples, lit from the same side as the ball; the hammered ring, whose mirror image the
+-- bumps break up. Outlines stay those of the smooth shape.
 -- 640x360, 9 camera samples a pixel: under ten seconds on two CPU cores.
 
 local scene = gr.node('scene')
@@ -21,18 +22,20 @@ back:translate(0, 0, -3)
 local weak, strong = { 0.08, 0.08, 0.08 }, { 0.5, 0.5, 0.5 }
 local white, brass = { 0.84, 0.84, 0.82 }, { 0.52, 0.36, 0.10 }
 
--- The materials of one half: FILE, KD, KS, p, REFL, AREA, IOR, POS; POS 1 takes the colour from the picture too.
+-- The materials of one half, the same colours twice: KD, KS, p, REFL; and FILE, KD, KS, p, REFL, AREA, IOR, POS, where
+-- POS 2 takes the colour from KD and only the heights from the file.
+local clay, wood, shine = { 0.66, 0.31, 0.22 }, { 0.47, 0.36, 0.27 }, { 0.8, 0.7, 0.4 }
 local smooth = {
-  brick = gr.texture_material('assets/brick.png', weak, 10),
-  bark = gr.texture_material('assets/bark.png', weak, 10),
+  brick = gr.material(clay, weak, 10),
+  bark = gr.material(wood, weak, 10),
   ball = gr.material(white, strong, 60),
-  ring = gr.refl_material(brass, { 0.8, 0.7, 0.4 }, 50, 0.2),
+  ring = gr.refl_material(brass, shine, 50, 0.2),
 }
 local bumped = {
-  brick = gr.bump_material('assets/brick.png', white, weak, 10, 0, 0, -1, 1),
-  bark = gr.bump_material('assets/bark.png', white, weak, 10, 0, 0, -1, 1),
+  brick = gr.bump_material('assets/brick-relief.png', clay, weak, 10, 0, 0, -1, 2),
+  bark = gr.bump_material('assets/bark-relief.png', wood, weak, 10, 0, 0, -1, 2),
   ball = gr.bump_material('assets/dimples.png', white, strong, 60, 0, 0, -1, 2),
-  ring = gr.bump_material('assets/dimples.png', brass, { 0.8, 0.7, 0.4 }, 50, 0.2, 0, -1, 2),
+  ring = gr.bump_material('assets/dimples.png', brass, shine, 50, 0.2, 0, -1, 2),
 }
 
 local function half(kind, x)
@@ -60,9 +63,8 @@ half(smooth, -1.85)
 half(bumped, 1.85)
 
 local key = gr.light({ -9, 6, 7 }, { 0.92, 0.88, 0.80 }, { 1, 0, 0 })
-local fill = gr.light({ 5, 3, 7 }, { 0.12, 0.14, 0.18 }, { 1, 0, 0 })
 
 gr.render(scene, 'bump.png', 640, 360,
   { 0, 2.3, 8.0 }, { 0, 0.98, 0 }, { 0, 1, 0 }, 30,
-  { 0.22, 0.22, 0.25 }, { key, fill },
+  { 0.28, 0.29, 0.33 }, { key },
   3) -- AA

@@ -41,7 +41,7 @@ local wall = put(scene, gr.mesh('wall',
   { { 0, 0, 0 }, { 2, 0, 0 }, { 2, 2, 0 }, { 0, 2, 0 },
     { left, bottom, 0 }, { right, bottom, 0 }, { right, top, 0 }, { left, top, 0 } },
   { { 0, 1, 5, 4 }, { 1, 2, 6, 5 }, { 2, 3, 7, 6 }, { 3, 0, 4, 7 } }),
-  gr.material { texture = 'assets/brick.png', bump = 'assets/brick.png' })
+  gr.material { texture = 'assets/brick.png', bump = 'assets/brick-relief.png' })
 wall:scale(2, 2, 2)
 wall:translate(-2, 0, -2)
 local wood = gr.material { diffuse = { 0.86, 0.82, 0.74 }, specular = { 0.2, 0.2, 0.2 } }
