@@ -6,6 +6,7 @@ pub(super) mod images;
 mod lights;
 mod materials;
 mod mesh;
+mod mesh_arrays;
 mod nodes;
 mod render;
 mod settings;
