@@ -1,5 +1,5 @@
 use super::Mesh;
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// A mesh in the making: vertices and convex planar polygons, each split into a fan of triangles.
 #[derive(Debug, Default)]
@@ -17,44 +17,9 @@ impl PolygonMesh {
         self.mesh.positions.push(position.as_vec3());
     }
 
-    /// Gives every vertex a normal, of any length; one of length 0 leaves its vertex without.
-    ///
-    /// # Errors
-    /// A message, if there are not as many as vertices.
-    pub fn set_normals(&mut self, normals: &[DVec3]) -> Result<(), String> {
-        self.check_count(normals.len(), "normals")?;
-        self.mesh.normals = normals.iter().map(|normal| normal.normalize_or_zero().as_vec3()).collect();
-        Ok(())
-    }
-
-    /// Gives every vertex a texture coordinate, whose v = 0 is the image's top row as on the other shapes.
-    ///
-    /// # Errors
-    /// A message, if there are not as many as vertices.
-    pub fn set_uvs(&mut self, uvs: &[DVec2]) -> Result<(), String> {
-        self.check_count(uvs.len(), "texture coordinates")?;
-        self.mesh.uvs = uvs.iter().map(|uv| Vec2::new(uv.x as f32, (1.0 - uv.y) as f32)).collect();
-        Ok(())
-    }
-
-    fn check_count(&self, count: usize, what: &str) -> Result<(), String> {
-        match self.mesh.positions.len() {
-            vertices if vertices == count => Ok(()),
-            vertices => Err(format!("{count} {what} for {vertices} vertices")),
-        }
-    }
-
-    /// Gives every vertex the mean normal of its triangles, weighted by their areas; vertices of none get none.
-    pub fn smooth(&mut self) {
-        let mut sums = vec![DVec3::ZERO; self.mesh.positions.len()];
-        for triangle in &self.mesh.triangles {
-            let [p0, p1, p2] = triangle.map(|corner| self.mesh.positions[corner as usize].as_dvec3());
-            let area = (p1 - p0).cross(p2 - p0);
-            for corner in triangle {
-                sums[*corner as usize] += area;
-            }
-        }
-        self.mesh.normals = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
+    /// Sets the positions, normals and texture coordinates of all vertices at once, in the terms of [`Mesh`].
+    pub fn set_vertices(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>, uvs: Vec<Vec2>) {
+        self.mesh = Mesh { positions, normals, uvs, ..std::mem::take(&mut self.mesh) };
     }
 
     /// Adds a polygon with these vertices, counter-clockwise seen from outside. Triangles without area are left out.

@@ -139,10 +139,7 @@ fn bad_table_meshes_name_the_vertex_or_face() {
             "argument 3: face [1]: expected a table of vertex numbers counted from 0, got 1.5 at [3]",
         ),
         (format!("{verts}, {{{{0,1}}}}"), "argument 3: face [1]: a face needs at least 3 vertices, got 2"),
-        (
-            format!("{verts}, {{{{0,1,2}}, 5}}"),
-            "argument 3: face [2]: expected a table of vertex numbers counted from 0, got 5",
-        ),
+        (format!("{verts}, {{5}}"), "argument 3: face [1]: expected a table of vertex numbers counted from 0, got 5"),
         (format!("{verts}, {{}}"), "argument 3: the mesh has no face with an area"),
         (format!("{verts}, {{{{0,0,1}}}}"), "argument 3: the mesh has no face with an area"),
         ("{{0,0,0}, {1,0}}, {}".to_owned(), "argument 2: vertex [2]: expected a table of 3 numbers, got 2 values"),
@@ -197,41 +194,95 @@ fn readobj_is_there_and_the_scenes_own_comes_first() {
 }
 
 #[test]
-fn every_form_of_table_means_the_same_mesh() {
+fn meshes_by_keys_are_nested_or_flat() {
     let nested = table_mesh(
-        "root = gr.mesh{positions={{0,0,0},{1,0,0},{1,1,0},{0,1,0}}, faces={{0,1,2,3}},
-                        normals={{0,0,2},{0,0,1},{0,3,0},{0,0,0}}, uvs={{0,0},{1,0},{1,1},{0,1}}}",
+        "root = gr.mesh{name='m', positions={{0,0,0}, {1,0,0}, {1,1,0}, {0,1,0}}, faces={{0,1,2,3}},
+         normals={{0,0,3}, {0,0,1}, {0,0,0}, {0,2,0}}, uvs={{0,0}, {1,0}, {1,1}, {0,0.25}}}",
     );
-    let rows = table_mesh(
-        "root = gr.mesh{positions={0,0,0, 1,0,0, 1,1,0, 0,1,0}, faces={0,1,2, 0,2,3},
-                        normals={0,0,2, 0,0,1, 0,3,0, 0,0,0}, uvs={0,0, 1,0, 1,1, 0,1}}",
+    let flat = table_mesh(
+        "root = gr.mesh{name='m', positions={0,0,0, 1,0,0, 1,1,0, '0',1,0}, faces={0,1,2, 0,2,'3'},
+         normals={0,0,3, 0,0,1, 0,0,0, 0,2,0}, uvs={0,0, 1,0, 1,1, 0,0.25}}",
     );
-    let positional = table_mesh(
-        "gr.conventions{transforms='pre'}
-         root = gr.mesh('mesh', {{0,0,0},{1,0,0},{1,1,0},{0,1,0}}, {{0,1,2,3}},
-                        {{0,0,2},{0,0,1},{0,3,0},{0,0,0}}, {{0,0},{1,0},{1,1},{0,1}})",
-    );
-    assert_eq!(nested.triangles, [[0, 1, 2], [0, 2, 3]]);
-    assert_eq!(nested.normals, [Vec3::Z, Vec3::Z, Vec3::Y, Vec3::ZERO]);
-    // Stored as OBJ has them, v upwards.
-    assert_eq!(nested.uvs, [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::X, Vec2::ZERO]);
-    assert_eq!(rows, nested);
-    assert_eq!(positional, nested);
+    assert_eq!(nested, flat);
+    assert_eq!(flat.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(flat.positions[3], Vec3::Y);
+    assert_eq!(flat.normals, [Vec3::Z, Vec3::Z, Vec3::ZERO, Vec3::Y]);
+    // A mesh holds v as OBJ files do.
+    assert_eq!(flat.uvs, [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0), Vec2::new(0.0, 0.75)]);
+    let sandbox = Sandbox::new();
+    sandbox.write("t.obj", format!("{SQUARE}f 1 2 3\n"));
+    let scenes = sandbox.load(&format!("root = gr.mesh{{name='t', file='t.obj'}} {RENDER}")).unwrap();
+    let root = &scenes[0].graph.nodes[0];
+    assert_eq!(root.name, "t");
+    assert!(matches!(&root.geometry.as_ref().unwrap().shape, Shape::Mesh(mesh) if mesh.triangles.len() == 1));
 }
 
 #[test]
-fn smooth_meshes_have_the_mean_normal_by_area() {
-    // A ridge: the face to the left is three times as long as the one to the right, at a right angle.
+fn smooth_normals_are_weighted_by_angle() {
+    // A corner of a cube, one face of which is cut in two at the corner: by area or by number it would weigh double.
     let mesh = table_mesh(
-        "root = gr.mesh{positions={-3,-3,0, 0,0,0, 0,0,-1, -3,-3,-1, 1,-1,0, 1,-1,-1},
-                        faces={{0,1,2,3}, {1,4,5,2}}, smooth=true}",
+        "root = gr.mesh{smooth=true, positions={0,0,0, 1,0,0, 1,1,0, 0,1,0, 0,0,-1, 9,9,9},
+         faces={0,1,2, 0,2,3, 0,4,1, 0,3,4}}",
     );
-    let (left, right) = (Vec3::new(-1.0, 1.0, 0.0), Vec3::new(1.0, 1.0, 0.0));
-    // The ridge's first end has one triangle of the left face and two of the right, its other end the reverse.
-    let expected = [(3.0 * left + 2.0 * right).normalize(), (6.0 * left + right).normalize()];
-    assert!(mesh.normals[1].abs_diff_eq(expected[0], 1e-6), "{} {}", mesh.normals[1], expected[0]);
-    assert!(mesh.normals[2].abs_diff_eq(expected[1], 1e-6), "{} {}", mesh.normals[2], expected[1]);
-    assert!(mesh.normals[0].abs_diff_eq(left.normalize(), 1e-6));
+    let corner = Vec3::new(-1.0, -1.0, 1.0).normalize();
+    assert!((mesh.normals[0] - corner).length() < 1e-6, "{:?}", mesh.normals);
+    assert_eq!(mesh.normals[2], Vec3::Z);
+    assert_eq!(mesh.normals[5], Vec3::ZERO);
+}
+
+#[test]
+fn bad_meshes_by_keys_name_the_key_and_the_place() {
+    let mesh = |extra: &str| format!("positions={{0,0,0, 1,0,0, 0,1,0}}, faces={{0,1,2}}{extra}");
+    for (keys, expected) in [
+        (mesh(", normal={}"), "unknown key 'normal'; did you mean 'normals'?"),
+        (mesh(", file='a.obj'"), "cannot stand together with 'file'"),
+        (mesh(", smooth=true, normals={0,0,1, 0,0,1, 0,0,1}"), "key 'smooth': cannot stand together with 'normals'"),
+        (mesh(", smooth=1"), "key 'smooth': expected true or false, got 1"),
+        (mesh(", normals={0,0,1}"), "key 'normals': expected one for each of the 3 vertices, got 1"),
+        (mesh(", normals={{0,0,1}, {0,1}}"), "key 'normals': normal [2]: expected a table of 3 numbers, got 2 values"),
+        (mesh(", uvs={0,0, 1,0, 0}"), "key 'uvs': expected 2 numbers for each uv, got 5 in all"),
+        (mesh(", uvs={0,0, 1,'x'}"), "key 'uvs': expected a number at [4], got the text 'x'"),
+        (
+            "faces={0,1,2}".to_owned(),
+            "key 'positions': expected a table of tables of 3 numbers, or of numbers, 3 for each vertex, got nil",
+        ),
+        ("positions={0,0,0, 1,nil,0}, faces={}".to_owned(), "key 'positions': expected a number at [5], got nil"),
+        (
+            "positions={0,0,0, 1,0}, faces={}".to_owned(),
+            "key 'positions': expected 3 numbers for each vertex, got 5 in all",
+        ),
+        (
+            "positions={{0,0,0}}".to_owned(),
+            "key 'faces': expected a table of faces, each a table of vertex numbers counted from 0, or of such \
+             numbers, 3 a triangle, got nil",
+        ),
+        (
+            "positions={{0,0,0}}, faces={0,0,0, 0,0,1}".to_owned(),
+            "key 'faces': triangle at [4] to [6]: there is no vertex 1; the 1 vertices are counted from 0",
+        ),
+        (
+            "positions={{0,0,0}}, faces={0,0.5,0}".to_owned(),
+            "key 'faces': expected a vertex number counted from 0 at [2], got 0.5",
+        ),
+        (
+            "positions={{0,0,0}}, faces={0,0}".to_owned(),
+            "key 'faces': expected 3 vertex numbers for each triangle, got 2 in all",
+        ),
+        (
+            "positions={{0,0,0}}, faces={{0,0,0}, {0,-1,0}}".to_owned(),
+            "key 'faces': face [2]: expected a table of vertex numbers counted from 0, got -1 at [2]",
+        ),
+        ("positions={{0,0,0}}, faces={{0,0,0}}".to_owned(), "key 'faces': the mesh has no face with an area"),
+    ] {
+        let got = message(&format!("gr.mesh{{{keys}}}"));
+        assert!(got.starts_with("scene.lua:1: gr.mesh: ") && got.ends_with(expected), "{got}\n{expected}");
+    }
+}
+
+#[test]
+fn meshes_by_keys_are_no_sign_of_the_old_skeleton() {
+    let script = "gr.mesh{positions={0,0,0, 1,0,0, 0,1,0}, faces={0,1,2}}";
+    assert_eq!(old_skeleton(script), (2.0, vec![]));
 }
 
 #[test]
@@ -239,50 +290,21 @@ fn a_mesh_may_be_shared_under_another_material() {
     let script = "local a = gr.mesh{positions={0,0,0, 1,0,0, 0,1,0}, faces={0,1,2}}
                   root = gr.node('n') root:add_child(a) root:add_child(gr.mesh{name='b', same_as=a})";
     let scenes = Sandbox::new().load(&format!("{script} {RENDER}")).unwrap();
-    let meshes: Vec<_> = scenes[0]
-        .graph
-        .nodes
-        .iter()
-        .filter_map(|node| match &node.geometry.as_ref()?.shape {
+    let nodes = scenes[0].graph.nodes.iter().filter_map(|node| node.geometry.as_ref());
+    let meshes: Vec<_> = nodes
+        .filter_map(|geometry| match &geometry.shape {
             Shape::Mesh(mesh) => Some(Arc::as_ptr(mesh)),
             _ => None,
         })
         .collect();
     assert_eq!(meshes.len(), 2);
     assert_eq!(meshes[0], meshes[1]);
-}
-
-#[test]
-fn bad_mesh_tables_say_where() {
-    let triangle = "positions={0,0,0, 1,0,0, 0,1,0}";
     for (arguments, expected) in [
-        (
-            "{faces={0,1,2}}".to_owned(),
-            "key 'positions': expected a table of tables of 3 numbers, or of numbers in one row",
-        ),
-        (format!("{{{triangle}}}"), "key 'faces': expected a table of faces"),
-        (format!("{{{triangle}, faces={{0,1}}}}"), "key 'faces': 2 vertex numbers in one row are no multiple of 3"),
-        (format!("{{{triangle}, faces={{0,1,3}}}}"), "key 'faces': face [1]: there is no vertex 3"),
-        (
-            format!("{{{triangle}, faces={{0,1,2, 0,1,'x'}}}}"),
-            "key 'faces': face [2]: expected a table of vertex numbers",
-        ),
-        (format!("{{{triangle}, faces={{0,1,2}}, normals={{0,0,1}}}}"), "key 'normals': 1 normals for 3 vertices"),
-        (
-            format!("{{{triangle}, faces={{0,1,2}}, uvs={{0,0,1}}}}"),
-            "key 'uvs': 3 numbers in one row are no multiple of 2",
-        ),
-        (
-            format!("{{{triangle}, faces={{0,1,2}}, uvs={{{{0,0}},{{1}}}}}}"),
-            "key 'uvs': uv [2]: expected a table of 2 numbers, got 1 value",
-        ),
-        ("{positions={0,0,0, 1,0,0, 0,1,false}, faces={0,1,2}}".to_owned(), "key 'positions': [9]: expected a number"),
-        (format!("{{{triangle}, face={{0,1,2}}}}"), "unknown key 'face'; did you mean 'faces'?"),
-        (format!("{{{triangle}, faces={{0,1,2}}, file='a.obj'}}"), "cannot stand together with 'file'"),
-        ("{same_as=gr.sphere('s')}".to_owned(), "key 'same_as': expected a node with a mesh"),
-        ("{same_as=3}".to_owned(), "key 'same_as': expected a node, got 3"),
+        ("{same_as=gr.sphere('s')}", "key 'same_as': expected a node with a mesh"),
+        ("{same_as=3}", "key 'same_as': expected a node, got 3"),
+        ("{same_as=gr.sphere('s'), faces={0,1,2}}", "cannot stand together with"),
     ] {
         let text = message(&format!("gr.mesh{arguments}"));
-        assert!(text.contains(&format!("scene.lua:1: gr.mesh: ")) && text.contains(expected), "{text}\n{expected}");
+        assert!(text.contains("scene.lua:1: gr.mesh: ") && text.contains(expected), "{text}");
     }
 }

@@ -6,7 +6,6 @@ pub(super) mod images;
 mod lights;
 mod materials;
 mod mesh;
-mod mesh_arrays;
 mod nodes;
 mod render;
 mod settings;

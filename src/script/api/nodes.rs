@@ -22,7 +22,6 @@ pub(super) fn make_node(call: &Call, geometry: Option<Geometry>, joint: Option<D
     make_named_node(call, call.name(0)?, geometry, joint)
 }
 
-/// Makes a node of this name, and its handle.
 pub(super) fn make_named_node(
     call: &Call,
     name: String,
