@@ -3,6 +3,7 @@
 //! World space is right-handed; lengths are in world units, angles in degrees, colours linear.
 
 mod camera;
+mod frame_rate;
 mod geometry;
 mod graph;
 mod image;
@@ -14,6 +15,7 @@ mod obj;
 mod polygons;
 
 pub use camera::Camera;
+pub use frame_rate::FrameRate;
 pub use geometry::{Geometry, Shape};
 pub use graph::{MaterialId, Node, NodeId, SceneGraph};
 pub use image::{Image, Texels};
