@@ -53,8 +53,9 @@ pub trait Painter {
     /// Fails the frame; [`Error::Interrupted`] ends the batch.
     fn paint(&mut self, frame: u32, scene: &Scene, buffers: Arc<SceneBuffers>) -> Result<Rendered>;
 
-    /// Whether the batch is to end. Asked between frames, and while no scene is ready.
-    fn is_stopped(&self) -> bool;
+    /// Whether the batch is to end here. Asked before each frame, and while no scene is ready; `in_frame` says whether
+    /// pictures of a frame have been rendered and others may follow.
+    fn is_stopped(&self, in_frame: bool) -> bool;
 }
 
 /// What becomes of the pictures, on a thread of its own.
@@ -160,16 +161,17 @@ fn paint_frames(
     out: &SyncSender<Painted>,
 ) -> Result<()> {
     for (&frame, scenes) in batch.frames.iter().zip(scenes.iter().cycle()) {
-        let outcome = paint_frame(frame, painter, scenes, out);
-        let stop = matches!(outcome, Err(Error::Interrupted));
-        let failed = outcome.is_err();
-        if !stop && out.send(Painted::End(outcome)).is_err() {
-            return Ok(());
-        }
-        if stop || painter.is_stopped() {
+        if painter.is_stopped(false) {
             return Err(Error::Interrupted);
         }
-        if failed && !batch.keep_going {
+        let outcome = paint_frame(frame, batch.keep_going, painter, scenes, out);
+        if matches!(outcome, Err(Error::Interrupted)) {
+            return outcome;
+        }
+        let failed = outcome.is_err();
+        let gone = out.send(Painted::End(outcome)).is_err();
+        // The encoder tells why.
+        if gone || (failed && !batch.keep_going) {
             return Ok(());
         }
     }
@@ -179,6 +181,7 @@ fn paint_frames(
 /// Renders the pictures of a frame as its script asks for them. After a picture that failed the others are passed over.
 fn paint_frame(
     frame: u32,
+    keep_going: bool,
     painter: &mut dyn Painter,
     scenes: &Receiver<Prepared>,
     out: &SyncSender<Painted>,
@@ -197,14 +200,13 @@ fn paint_frame(
                             return Err(Error::Interrupted);
                         }
                     }
-                    Err(Error::Interrupted) => return Err(Error::Interrupted),
+                    Err(error) if !keep_going || matches!(error, Error::Interrupted) => return Err(error),
                     Err(error) => failure = Some(error),
                 }
             }
             Ok(Prepared::Picture(_)) => {}
             Ok(Prepared::End(outcome)) => return failure.map_or(outcome, Err),
-            // A frame that is begun is finished.
-            Err(RecvTimeoutError::Timeout) if !begun && painter.is_stopped() => return Err(Error::Interrupted),
+            Err(RecvTimeoutError::Timeout) if painter.is_stopped(begun) => return Err(Error::Interrupted),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(Error::Scene(format!("frame {frame}: the thread of its script has ended early")));
@@ -214,7 +216,12 @@ fn paint_frame(
 }
 
 /// Hands the pictures to the output, and tells how each frame ended.
-fn write_frames(frames: &[u32], keep_going: bool, painted: &Receiver<Painted>, output: &mut dyn BatchOutput) -> Result<()> {
+fn write_frames(
+    frames: &[u32],
+    keep_going: bool,
+    painted: &Receiver<Painted>,
+    output: &mut dyn BatchOutput,
+) -> Result<()> {
     for &frame in frames {
         let mut outcome = Ok(());
         loop {

@@ -92,7 +92,9 @@ mod tests {
 
     #[test]
     fn other_patterns_are_refused() {
-        for pattern in ["frame.png", "%d-%d.png", "%x.png", "%", "%%d.png", "%-4d.png", "%+4d.png", "%1000d.png", "%5.png"] {
+        for pattern in
+            ["frame.png", "%d-%d.png", "%x.png", "%", "%%d.png", "%-4d.png", "%+4d.png", "%1000d.png", "%5.png"]
+        {
             assert!(pattern.parse::<FramePattern>().is_err(), "{pattern}");
         }
     }

@@ -31,7 +31,9 @@ impl FromStr for FrameRange {
             Some((number(first)?, number(last)?, number(step)?))
         };
         let Some((first, last, step)) = parts() else {
-            return Err("expected FIRST..LAST or FIRST..LAST:STEP, such as 1..100 or 0..100:5, both ends included".into());
+            return Err(
+                "expected FIRST..LAST or FIRST..LAST:STEP, such as 1..100 or 0..100:5, both ends included".into()
+            );
         };
         if step == 0 {
             return Err("the step must be at least 1".into());

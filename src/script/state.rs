@@ -4,7 +4,9 @@ use super::conventions::{ConventionSources, TransformOrder};
 use super::library::Library;
 use super::search::SearchPath;
 use super::{ScriptOptions, diagnostics};
-use crate::scene::{Background, Bump, FrameRate, Geometry, Image, Material, MaterialId, Mesh, Node, NodeId, SceneGraph};
+use crate::scene::{
+    Background, Bump, FrameRate, Geometry, Image, Material, MaterialId, Mesh, Node, NodeId, SceneGraph,
+};
 use glam::DAffine3;
 use mlua::Lua;
 use std::collections::{HashMap, HashSet};

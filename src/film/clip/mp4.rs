@@ -23,7 +23,12 @@ const POLL: Duration = Duration::from_millis(5);
 /// # Errors
 /// [`Error::Device`] where there is no ffmpeg that runs.
 pub(super) fn check_ffmpeg() -> Result<()> {
-    let run = Command::new("ffmpeg").arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let run = Command::new("ffmpeg")
+        .arg("-version")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
     let why = match run {
         Ok(status) if status.success() => return Ok(()),
         Ok(status) => format!("'ffmpeg -version' ended with {status}"),
@@ -51,7 +56,16 @@ impl Mp4 {
         command.args(["-framerate", &shape.rate.to_string(), "-i", "pipe:0", "-an"]);
         command.args(["-vf", "scale=out_color_matrix=bt709:out_range=limited,format=yuv420p"]);
         command.args(["-c:v", "libx264", "-crf", QUALITY]);
-        command.args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]);
+        command.args([
+            "-colorspace",
+            "bt709",
+            "-color_primaries",
+            "bt709",
+            "-color_trc",
+            "bt709",
+            "-color_range",
+            "tv",
+        ]);
         command.args(["-movflags", "+faststart", "-f", "mp4"]).arg(file.temporary_path());
         Ok(Mp4 { ffmpeg: Ffmpeg::start(command)?, file })
     }

@@ -4,8 +4,7 @@ use super::Function;
 use crate::script::arguments::{Call, Failure, Outcome};
 use mlua::Value;
 
-pub(super) const FUNCTIONS: &[Function] =
-    &[
+pub(super) const FUNCTIONS: &[Function] = &[
     ("gr.frame_cmd", 0, frame),
     ("gr.frame", 0, frame),
     ("gr.frames", 0, frames),
