@@ -42,8 +42,15 @@ impl Plan {
         let total_frames = arguments.total_frames.unwrap_or(count);
         let mut plan =
             Plan { frames: all, skipped: 0, total_frames, destination, is_batch: arguments.frames.is_some() };
-        for (given, option) in [(arguments.resume, "--resume"), (arguments.keep_going, "--keep-going")] {
-            if given && !matches!(plan.destination, Destination::Numbered(_)) {
+        let (numbered, clip) = match plan.destination {
+            Destination::Numbered(_) => (true, false),
+            Destination::Clip { .. } => (false, true),
+            _ => (false, false),
+        };
+        for (refused, option) in
+            [(arguments.resume && !numbered, "--resume"), (arguments.keep_going && clip, "--keep-going")]
+        {
+            if refused {
                 return Err(usage(format!(
                     "{option} takes numbered frames, as of -o frame-%04d.png; a clip is whole or not there"
                 )));

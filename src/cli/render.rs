@@ -139,8 +139,7 @@ impl Studio<'_> {
         let path = std::path::absolute(&scene.output).unwrap_or_else(|_| scene.output.clone());
         match self.written.insert(path, frame) {
             Some(other) if other != frame => Err(Error::Scene(format!(
-                "frame {frame} would overwrite '{}' of frame {other}; put gr.frame() into its name, or give \
-                 -o NAME-%04d.png",
+                "it would overwrite '{}' of frame {other}; put gr.frame() into the name, or give -o NAME-%04d.png",
                 scene.output.display()
             ))),
             _ => Ok(()),

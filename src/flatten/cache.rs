@@ -77,7 +77,7 @@ impl FlattenCache {
     pub(super) fn begin_scene(&self) {
         let Some(mut kept) = self.lock() else { return };
         kept.scene += 1;
-        let oldest = kept.scene.saturating_sub(self.keep + 1);
+        let oldest = kept.scene.saturating_sub(self.keep);
         kept.meshes.retain(|mesh| mesh.last_scene >= oldest);
         kept.images.retain(|_, image| image.last_scene >= oldest);
     }

@@ -131,7 +131,7 @@ impl ClipWriter {
             };
             sink.add(&film.resolve(transfer, transparent && self.format.shows_transparency()))
         };
-        add().map_err(|source| Error::file(ACTION, &self.path, source))
+        add().map_err(|source| Error::file(ACTION, shown(&self.path), source))
     }
 
     /// Completes the clip: only now is it there under its name.
@@ -140,8 +140,13 @@ impl ClipWriter {
     /// [`Error::File`].
     pub fn finish(self) -> Result<()> {
         let Some((_, sink)) = self.open else { return Ok(()) };
-        sink.finish().map_err(|source| Error::file(ACTION, &self.path, source))
+        sink.finish().map_err(|source| Error::file(ACTION, shown(&self.path), source))
     }
+}
+
+/// The clip's name in messages.
+fn shown(path: &Path) -> &Path {
+    if path == Path::new("-") { Path::new("standard output") } else { path }
 }
 
 fn open_sink(path: &Path, format: ClipFormat, shape: &Shape) -> io::Result<Box<dyn FrameSink>> {
