@@ -80,8 +80,11 @@ struct Counts {
 struct Entry<T> {
     last_run: u64,
     /// Locked while the file is read, so that runs side by side read it once.
-    slot: Arc<Mutex<Option<(Stamp, Arc<T>)>>>,
+    slot: Arc<Slot<T>>,
 }
+
+/// The version that was read last, once it was.
+type Slot<T> = Mutex<Option<(Stamp, Arc<T>)>>;
 
 /// What tells one version of a file from the next.
 type Stamp = (Option<SystemTime>, u64);
