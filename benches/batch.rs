@@ -61,9 +61,9 @@ fn main() -> ExitCode {
 
 fn measure(arguments: &Arguments) -> Result<()> {
     println!(
-        "| device | batch / single runs | batch / rendering | single runs | batch | rendering alone | in the batch |"
+        "| device | batch / single runs | batch / rendering alone | batch / rendering in it | single runs | batch | rendering alone | in the batch |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     for device in &arguments.devices {
         round(arguments, device)?;
         let rounds = (0..arguments.rounds).map(|_| round(arguments, device)).collect::<Result<Vec<_>>>()?;
@@ -74,9 +74,10 @@ fn measure(arguments: &Arguments) -> Result<()> {
             if values.len() % 2 == 1 { values[middle] } else { (values[middle - 1] + values[middle]) / 2.0 }
         };
         println!(
-            "| {device} | {:.3} | {:.3} | {:.2} s | {:.2} s | {:.2} s | {:.2} s |",
+            "| {device} | {:.3} | {:.3} | {:.3} | {:.2} s | {:.2} s | {:.2} s | {:.2} s |",
             median(&|round| round.batch / round.singles),
             median(&|round| round.batch / round.singles_rendering),
+            median(&|round| round.batch / round.batch_rendering),
             median(&|round| round.singles),
             median(&|round| round.batch),
             median(&|round| round.singles_rendering),
