@@ -1,8 +1,8 @@
 //! Camera rays; twin of `shaders/camera.wgsl`.
 
+use crate::cpu::dimensions::{DIMENSION_LENS, DIMENSION_PIXEL};
 use crate::cpu::math::elementary::unit_vector;
 use crate::cpu::math::rng::{hash_combine, sobol_2d};
-use crate::cpu::path::{DIMENSION_LENS, DIMENSION_PIXEL};
 use crate::layout::{FRAME_SAMPLE_CENTRE, FRAME_SAMPLE_CORNER, Frame};
 use glam::{UVec2, Vec2, Vec3};
 

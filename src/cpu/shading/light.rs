@@ -1,11 +1,12 @@
 //! Lights: where shadow rays aim, and what arrives; twin of `shaders/shading/light.wgsl`.
 
 use crate::cpu::bindings::Bindings;
+use crate::cpu::dimensions::{DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE};
 use crate::cpu::geometry::hit::Surface;
 use crate::cpu::math::offset::offset_ray_origin;
 use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::math::sampling::sample_cone;
-use crate::cpu::path::{DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, Ray};
+use crate::cpu::ray::Ray;
 use crate::cpu::shading::material::phong;
 use crate::cpu::shading::medium::is_mist_event;
 use crate::layout::{FRAME_BLINN, Frame, LIGHT_PARALLELOGRAM, LIGHT_POINT, Light, Material};

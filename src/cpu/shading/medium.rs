@@ -3,7 +3,7 @@
 use crate::cpu::bindings::Bindings;
 use crate::cpu::geometry::hit::Surface;
 use crate::cpu::math::elementary::log2_poly;
-use crate::cpu::path::T_INFINITY;
+use crate::cpu::ray::T_INFINITY;
 use crate::cpu::shading::material::{media_contains, media_enter, media_leave};
 use glam::{UVec2, Vec3};
 

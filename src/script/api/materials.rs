@@ -31,7 +31,7 @@ const KEYS: &[&str] = &[
 ];
 
 /// What a volume has no surface for.
-const SURFACE_KEYS: &[&str] = &["reflection", "glossy", "ior", "bump", "noise", "emission"];
+const SURFACE_KEYS: &[&str] = &["reflection", "glossy", "ior", "bump", "noise", "emission", "texture"];
 
 /// `gr.material({kd}, {ks}, shininess)`, Phong's; or `gr.material{…}` with any of [`KEYS`].
 fn material(call: &Call) -> Outcome<Value> {
