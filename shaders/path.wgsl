@@ -1,43 +1,8 @@
 // The tree of rays under one camera ray, walked with an explicit stack. A hit of a camera ray may split; deeper, each
 // choice takes one ray by Russian roulette, so that the stack never holds more than the splits of one hit.
 
-// Keys of the random decisions of a ray, and of the rays it spawns; see hash_combine.
-const DIMENSION_PIXEL: u32 = 1u;
-const DIMENSION_LENS: u32 = 2u;
-const DIMENSION_GLOSSY: u32 = 3u;
-const DIMENSION_CHOICE: u32 = 4u;
-const DIMENSION_LIGHT_CHOICE: u32 = 5u;
-const BRANCH_REFLECTED: u32 = 6u;
-const BRANCH_REFRACTED: u32 = 7u;
-const DIMENSION_MIST: u32 = 8u;
-// Light i has the dimension DIMENSION_LIGHT + i.
-const DIMENSION_LIGHT: u32 = 16u;
-
 // The splits of one hit in one pass: glossy rays (`MAX_GLOSSY_SAMPLES` in src/flatten/work.rs) and a refracted one.
 const RAY_STACK_SIZE: u32 = 5u;
-const T_INFINITY: f32 = 3.0e38;
-
-struct Ray {
-    origin: vec3<f32>,
-    // Where it is as to mist: the point of the surface that it leaves, without the offset, which might skip a boundary.
-    start: vec3<f32>,
-    // Unit.
-    direction: vec3<f32>,
-    // Share of this ray's radiance in the camera ray's.
-    weight: f32,
-    // The refractive media and the mists that it is in.
-    media: vec2<u32>,
-    mists: vec2<u32>,
-    // Width of what it stands for at its origin, world units, and how that grows a world unit: a ray cone
-    // (Akenine-Möller et al., Ray Tracing Gems ch. 20).
-    cone_width: f32,
-    cone_spread: f32,
-    // Number among the samples that share `key`, and the key of its random decisions.
-    index: u32,
-    key: u32,
-    depth: u32,
-};
-
 var<private> ray_stack: array<Ray, RAY_STACK_SIZE>;
 var<private> ray_stack_size: u32;
 
@@ -194,7 +159,7 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
         frame.medium,
         frame.mist,
         0.0,
-        frame.pixel_spread,
+        camera.spread,
         sample_index,
         camera.key,
         0u,
@@ -289,7 +254,7 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
                 flight.left -= met.t + step;
                 flight.leg++;
                 if (flight.leg > MIST_CROSSINGS) {
-                    tally.flags |= STATUS_LOOP_BOUND;
+                    tally.flags |= STATUS_MIST_CROSSINGS;
                     flight.going = false;
                 }
                 continue;

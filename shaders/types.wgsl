@@ -209,6 +209,7 @@ const LIGHT_SPHERE: u32 = 2u;
 
 const STATUS_LOOP_BOUND: u32 = 1u;     // a loop left on its bound: the result is not complete
 const STATUS_STACK_FULL: u32 = 2u;     // a stack had no room for an entry
+const STATUS_MIST_CROSSINGS: u32 = 16u;  // a ray crossed more boundaries of mist than MIST_CROSSINGS
 const STATUS_NOT_FINITE: u32 = 4u;     // a sample was NaN or infinite and was counted as black
 const STATUS_SATURATED: u32 = 8u;      // a sample lay outside the film's range of +-2047
 

@@ -190,6 +190,7 @@ pub const STATUS_LOOP_BOUND: u32 = 1;
 pub const STATUS_STACK_FULL: u32 = 2;
 pub const STATUS_NOT_FINITE: u32 = 4;
 pub const STATUS_SATURATED: u32 = 8;
+pub const STATUS_MIST_CROSSINGS: u32 = 16;
 
 pub const RAY_CAMERA: u32 = 0;
 pub const RAY_SHADOW: u32 = 1;

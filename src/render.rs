@@ -2,9 +2,10 @@
 
 use crate::cpu::bindings::Bindings;
 use crate::cpu::media::{media_at, mists_at};
+use crate::cpu::shading::medium::MIST_CROSSINGS;
 use crate::film::Film;
 use crate::flatten::{SceneBuffers, WorkPlan, plan_work};
-use crate::layout::{Dispatch, Frame, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
+use crate::layout::{Dispatch, Frame, STATUS_LOOP_BOUND, STATUS_MIST_CROSSINGS, STATUS_STACK_FULL};
 use crate::renderer::{Renderer, Tally};
 use crate::{Error, Result};
 use std::ops::{ControlFlow, Range};
@@ -193,6 +194,12 @@ impl Job<'_> {
             if flags & STATUS_STACK_FULL != 0 {
                 return Err(Error::Kernel("a traversal stack overflowed: the scene's hierarchy is too deep".into()));
             }
+            if flags & STATUS_MIST_CROSSINGS != 0 {
+                return Err(Error::Kernel(format!(
+                    "a ray crosses more than {MIST_CROSSINGS} boundaries of mist; use fewer shapes of mist, for example \
+                     one in place of many that overlap or touch"
+                )));
+            }
             if flags & STATUS_LOOP_BOUND == 0 {
                 return Ok(());
             }
@@ -247,7 +254,7 @@ impl Job<'_> {
             let took = submitted.elapsed();
             self.longest_submit = self.longest_submit.max(took);
             self.tally += tally;
-            if tally.flags & (STATUS_LOOP_BOUND | STATUS_STACK_FULL) != 0 {
+            if tally.flags & (STATUS_LOOP_BOUND | STATUS_STACK_FULL | STATUS_MIST_CROSSINGS) != 0 {
                 self.tally.flags = 0;
                 return Ok(tally.flags);
             }

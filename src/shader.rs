@@ -51,6 +51,8 @@ pub const PARTS: &[Part<'static>] = parts![
     "shading/detail.wgsl"
     "shading/medium.wgsl"
     "shading/background.wgsl"
+    "dimensions.wgsl"
+    "ray.wgsl"
     "camera.wgsl"
     "path.wgsl"
     "film.wgsl"

@@ -6,10 +6,12 @@ use crate::support::kernel::evaluate;
 use crate::support::placed::*;
 use crate::support::rays::{draw, placement};
 use glam::{DAffine3, DMat2, DVec2, DVec3, Vec2, Vec3};
+use gpu_trace::cpu::geometry;
 use gpu_trace::cpu::geometry::bvh::scene_intersect;
 use gpu_trace::cpu::geometry::hit::{Hit, Parameterisation};
 use gpu_trace::cpu::geometry::instance::surface_at;
 use gpu_trace::cpu::geometry::parameterisation::parameterise_at;
+use gpu_trace::cpu::geometry::revolution::revolution;
 use gpu_trace::cpu::geometry::{cone::*, cube::*, cylinder::*, plane::*, sphere::*, torus::*, triangle::*};
 use gpu_trace::cpu::math::elementary::{acos_poly, asin_poly, atan2_poly};
 use gpu_trace::renderer::Tally;
@@ -20,6 +22,22 @@ use std::sync::Arc;
 
 const SAME: u32 = 0;
 const TORUS: Vec2 = Vec2::new(1.0, 0.4);
+
+fn sphere_parameterise(point: Vec3, face: u32) -> Parameterisation {
+    geometry::sphere::sphere_parameterise(point, face, revolution(point))
+}
+
+fn cylinder_parameterise(point: Vec3, face: u32) -> Parameterisation {
+    geometry::cylinder::cylinder_parameterise(point, face, revolution(point))
+}
+
+fn cone_parameterise(point: Vec3, face: u32) -> Parameterisation {
+    geometry::cone::cone_parameterise(point, face, revolution(point))
+}
+
+fn torus_parameterise(point: Vec3, face: u32, radii: Vec2) -> Parameterisation {
+    geometry::torus::torus_parameterise(point, face, revolution(point), radii)
+}
 
 /// A face of a shape in object space: the point at (u, v), and what the renderer makes of that point.
 struct Face {
@@ -256,7 +274,11 @@ fn face_twins(face: &Face, cpu: impl Fn(Vec3, u32) -> Parameterisation) -> Twins
     }
     let radii = floats([TORUS.x, TORUS.y, 0.0, 0.0]);
     let inputs = points.iter().map(|p| [[p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), face.face], radii]).collect();
-    let extra = if face.shape == "torus" { ", floats_at(1u).xy" } else { "" };
+    let extra = match face.shape {
+        "torus" => ", revolution(vec3_at(0u)), floats_at(1u).xy",
+        "sphere" | "cylinder" | "cone" => ", revolution(vec3_at(0u))",
+        _ => "",
+    };
     let body = format!(
         "let found = {}_parameterise(vec3_at(0u), inputs[0].w{extra});
          results[0] = float_lane(vec4<f32>(found.uv, 0.0, 0.0));

@@ -4,9 +4,9 @@
 use crate::support::chi_square_deviate;
 use glam::{Vec2, Vec3};
 use gpu_trace::cpu::camera::camera_ray;
+use gpu_trace::cpu::dimensions::{DIMENSION_CHOICE, DIMENSION_LENS, DIMENSION_LIGHT, DIMENSION_PIXEL};
 use gpu_trace::cpu::math::rng::{hash_combine, hash_u32, sobol_2d};
 use gpu_trace::cpu::math::sampling::{orthonormal_basis, sample_cone, sample_glossy};
-use gpu_trace::cpu::path::{DIMENSION_CHOICE, DIMENSION_LENS, DIMENSION_LIGHT, DIMENSION_PIXEL};
 use gpu_trace::cpu::shading::light::sample_light;
 use gpu_trace::layout::{Frame, LIGHT_PARALLELOGRAM, LIGHT_SPHERE, Light};
 

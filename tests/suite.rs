@@ -6,6 +6,7 @@ mod analytic;
 mod animation;
 mod backgrounds;
 mod bump;
+mod camera;
 mod cli;
 mod compare;
 mod detail;

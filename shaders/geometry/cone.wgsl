@@ -67,11 +67,10 @@ fn cone_normal(point: vec3<f32>, face: u32) -> vec3<f32> {
 }
 
 // Around the axis to the right and from the apex downwards; the cap by x and z.
-fn cone_parameterise(point: vec3<f32>, face: u32) -> Parameterisation {
+fn cone_parameterise(point: vec3<f32>, face: u32, around: Revolution) -> Parameterisation {
     if face != CONE_SIDE {
         return cap_parameterise(point, -1.0);
     }
-    let around = revolution(point);
     let dpdv = vec3<f32>(around.radial.x, -1.0, around.radial.z);
     return Parameterisation(vec2<f32>(around.u, -point.y), around.dpdu, dpdv);
 }

@@ -55,11 +55,10 @@ fn cylinder_normal(point: vec3<f32>, face: u32) -> vec3<f32> {
 }
 
 // Around the axis to the right and along it downwards; the caps by x and z.
-fn cylinder_parameterise(point: vec3<f32>, face: u32) -> Parameterisation {
+fn cylinder_parameterise(point: vec3<f32>, face: u32, around: Revolution) -> Parameterisation {
     if face != CYLINDER_SIDE {
         return cap_parameterise(point, select(-1.0, 1.0, face == CYLINDER_TOP));
     }
-    let around = revolution(point);
     let v = 0.5 - point.y * 0.5;
     return Parameterisation(vec2<f32>(around.u, v), around.dpdu, vec3<f32>(0.0, -2.0, 0.0));
 }

@@ -4,23 +4,25 @@
 // In world space; the tangents are not of unit length, but the true derivatives of the point.
 fn parameterise_at(hit: Hit, surface: Surface) -> Parameterisation {
     let point = transform_point(instances[hit.instance].object_from_world, surface.point);
+    // Once for all shapes that share it: it costs much code.
+    let around = revolution(point);
     var result = Parameterisation(vec2<f32>(0.0), vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 0.0, 1.0));
     switch instances[hit.instance].shape {
         case SHAPE_SPHERE: {
-            if HAS_SPHERE { result = sphere_parameterise(point, hit.primitive); }
+            if HAS_SPHERE { result = sphere_parameterise(point, hit.primitive, around); }
         }
         case SHAPE_CUBE: {
             if HAS_CUBE { result = cube_parameterise(point, hit.primitive); }
         }
         case SHAPE_CYLINDER: {
-            if HAS_CYLINDER { result = cylinder_parameterise(point, hit.primitive); }
+            if HAS_CYLINDER { result = cylinder_parameterise(point, hit.primitive, around); }
         }
         case SHAPE_CONE: {
-            if HAS_CONE { result = cone_parameterise(point, hit.primitive); }
+            if HAS_CONE { result = cone_parameterise(point, hit.primitive, around); }
         }
         case SHAPE_TORUS: {
             if HAS_TORUS {
-                result = torus_parameterise(point, hit.primitive, instances[hit.instance].parameters.xy);
+                result = torus_parameterise(point, hit.primitive, around, instances[hit.instance].parameters.xy);
             }
         }
         case SHAPE_PLANE: {

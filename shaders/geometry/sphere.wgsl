@@ -27,8 +27,7 @@ fn sphere_normal(point: vec3<f32>, face: u32) -> vec3<f32> {
 }
 
 // Longitude to the right and latitude downwards; the seam is at -x.
-fn sphere_parameterise(point: vec3<f32>, face: u32) -> Parameterisation {
-    let around = revolution(point);
+fn sphere_parameterise(point: vec3<f32>, face: u32, around: Revolution) -> Parameterisation {
     // The latitude is asin(y), in the form that keeps its digits near the poles. 1/pi and pi.
     let v = 0.5 - atan2_poly(point.y, around.rho) * 0.31830987;
     let rise = point.y * 3.1415927;

@@ -125,8 +125,7 @@ fn torus_normal(point: vec3<f32>, face: u32, radii: vec2<f32>) -> vec3<f32> {
 }
 
 // Around the axis to the right and around the tube downwards from its inner side, where the seam of v is.
-fn torus_parameterise(point: vec3<f32>, face: u32, radii: vec2<f32>) -> Parameterisation {
-    let around = revolution(point);
+fn torus_parameterise(point: vec3<f32>, face: u32, around: Revolution, radii: vec2<f32>) -> Parameterisation {
     let e = around.rho - radii.x;
     let v = 0.5 - atan2_poly(point.y, e) * 0.15915494;
     let rise = point.y * 6.2831855;

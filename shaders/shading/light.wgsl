@@ -12,14 +12,15 @@ fn sample_light(light: Light, point: vec3<f32>, xi: vec2<f32>) -> vec3<f32> {
     let to_centre = light.position - point;
     let distance_squared = dot(to_centre, to_centre);
     let radius_squared = light.radius * light.radius;
-    if (distance_squared <= radius_squared) {
-        return light.position + light.radius * sample_cone(vec3<f32>(0.0, 0.0, 1.0), 2.0, xi);
-    }
+    let inside = distance_squared <= radius_squared;
     // 1 - cos of the cone that touches the ball, without cancellation (pbrt-v4, section 6.2.4).
     let sine_squared = radius_squared / distance_squared;
-    let one_minus_cos = sine_squared / (1.0 + sqrt(1.0 - sine_squared));
-    let axis = to_centre / sqrt(distance_squared);
+    let one_minus_cos = select(sine_squared / (1.0 + sqrt(1.0 - sine_squared)), 2.0, inside);
+    let axis = select(to_centre / sqrt(distance_squared), vec3<f32>(0.0, 0.0, 1.0), inside);
     let direction = sample_cone(axis, one_minus_cos, xi);
+    if (inside) {
+        return light.position + light.radius * direction;
+    }
     let along = dot(direction, to_centre);
     let half_chord = sqrt(max(radius_squared - max(distance_squared - along * along, 0.0), 0.0));
     return point + (along - half_chord) * direction;

@@ -54,20 +54,20 @@ fn media_enter(media: vec2<u32>, medium: u32) -> vec2<u32> {
     return vec2<u32>((media.x << 16u) | medium, (media.y << 16u) | (media.x >> 16u));
 }
 
+// Without branches, since the kernel holds several copies: each place takes the next one's number from the medium on.
 fn media_leave(media: vec2<u32>, medium: u32) -> vec2<u32> {
-    if ((media.x & 0xffffu) == medium) {
-        return vec2<u32>((media.x >> 16u) | (media.y << 16u), media.y >> 16u);
-    }
-    if ((media.x >> 16u) == medium) {
-        return vec2<u32>((media.x & 0xffffu) | (media.y << 16u), media.y >> 16u);
-    }
-    if ((media.y & 0xffffu) == medium) {
-        return vec2<u32>(media.x, media.y >> 16u);
-    }
-    if ((media.y >> 16u) == medium) {
-        return vec2<u32>(media.x, media.y & 0xffffu);
-    }
-    return media;
+    let first = media.x & 0xffffu;
+    let second = media.x >> 16u;
+    let third = media.y & 0xffffu;
+    let fourth = media.y >> 16u;
+    let from_first = first == medium;
+    let from_second = from_first || second == medium;
+    let from_third = from_second || third == medium;
+    let from_fourth = from_third || fourth == medium;
+    return vec2<u32>(
+        select(first, second, from_first) | (select(second, third, from_second) << 16u),
+        select(third, fourth, from_third) | (select(fourth, 0u, from_fourth) << 16u),
+    );
 }
 
 // Refractive index at a point within these media; 1 outside them all.

@@ -28,10 +28,7 @@ fn beyond_boundary(point: vec3<f32>, origin: vec3<f32>, direction: vec3<f32>, t:
 
 // Scattering events a world unit of one mist; number 0 is none.
 fn mist_density(number: u32) -> f32 {
-    if (number == 0u) {
-        return 0.0;
-    }
-    return materials[number - 1u].density;
+    return select(0.0, materials[max(number, 1u) - 1u].density, number != 0u);
 }
 
 // The same of all the mists together.
@@ -48,22 +45,18 @@ fn free_flight(density: f32, xi: f32) -> f32 {
     return -0.6931472 * log2_poly(1.0 - xi) / density;
 }
 
-// Which of the mists scatters, in proportion to their densities.
+// Which of the mists scatters, in proportion to their densities. Numbers of 0 come last and have no share.
 fn choose_mist(mists: vec2<u32>, xi: f32) -> u32 {
-    var left = xi * mists_density(mists);
-    left -= mist_density(mists.x & 0xffffu);
-    if (left < 0.0 || (mists.x >> 16u) == 0u) {
-        return mists.x & 0xffffu;
-    }
-    left -= mist_density(mists.x >> 16u);
-    if (left < 0.0 || (mists.y & 0xffffu) == 0u) {
-        return mists.x >> 16u;
-    }
-    left -= mist_density(mists.y & 0xffffu);
-    if (left < 0.0 || (mists.y >> 16u) == 0u) {
-        return mists.y & 0xffffu;
-    }
-    return mists.y >> 16u;
+    let second = mists.x >> 16u;
+    let third = mists.y & 0xffffu;
+    let fourth = mists.y >> 16u;
+    let to_first = mist_density(mists.x & 0xffffu);
+    let to_second = to_first + mist_density(second);
+    let to_third = to_second + mist_density(third);
+    let aim = xi * (to_third + mist_density(fourth));
+    let chosen = select(mists.x & 0xffffu, second, second != 0u && aim >= to_first);
+    let later = select(chosen, third, third != 0u && aim >= to_second);
+    return select(later, fourth, fourth != 0u && aim >= to_third);
 }
 
 // A scattering event as light_sample takes it: a surface without a normal.

@@ -21,11 +21,15 @@ fn texture_lookup(image: u32, uv: vec2<f32>, footprint: f32) -> vec3<f32> {
     let width = clamp(footprint * max(size.x, size.y), 1.0, 16777216.0);
     let level = min(log2_poly(width), f32(last));
     let finer = floor(level);
-    let fine = texture_level(image, min(u32(finer), last), uv);
     let blend = level - finer;
-    if blend <= 0.0 { return fine; }
-    let coarse = texture_level(image, min(u32(finer) + 1u, last), uv);
-    return fine + (coarse - fine) * blend;
+    // One call site for both levels, and one for both rows in texture_level: the kernel holds several copies of this.
+    let levels = select(1u, 2u, blend > 0.0);
+    var colour = vec3<f32>(0.0);
+    for (var i = 0u; i < levels; i++) {
+        let found = texture_level(image, min(u32(finer) + i, last), uv);
+        colour = select(mix_texels(colour, found, blend), found, i == 0u);
+    }
+    return colour;
 }
 
 // The radiance from a direction in an equirectangular picture: its middle is towards -z, its top row straight up.
@@ -53,13 +57,16 @@ fn texture_level(image: u32, level: u32, uv: vec2<f32>) -> vec3<f32> {
     let right = texel_after(x0, width);
     let below = texel_after(y0, height);
     let left = select(right, width, right == 0u) - 1u;
-    let above = start + (select(below, height, below == 0u) - 1u) * width;
-    let under = start + below * width;
-    let upper = mix_texels(texel_colour(texels[above + left], rgb9e5), texel_colour(texels[above + right], rgb9e5),
-        x - x0);
-    let lower = mix_texels(texel_colour(texels[under + left], rgb9e5), texel_colour(texels[under + right], rgb9e5),
-        x - x0);
-    return mix_texels(upper, lower, y - y0);
+    let above = select(below, height, below == 0u) - 1u;
+    // An image of one row has no second to blend with.
+    let rows = select(1u, 2u, height > 1u);
+    var colour = vec3<f32>(0.0);
+    for (var i = 0u; i < rows; i++) {
+        let row = start + select(below, above, i == 0u) * width;
+        let found = mix_texels(texel_colour(texels[row + left], rgb9e5), texel_colour(texels[row + right], rgb9e5), x - x0);
+        colour = select(mix_texels(colour, found, y - y0), found, i == 0u);
+    }
+    return colour;
 }
 
 // The texel to the right of coordinate x in [-1, count], repeated. Always below count.
@@ -73,10 +80,9 @@ fn mix_texels(a: vec3<f32>, b: vec3<f32>, t: f32) -> vec3<f32> {
 }
 
 fn texel_colour(word: u32, rgb9e5: bool) -> vec3<f32> {
-    if rgb9e5 {
-        // 2^(exponent - 15 - 9), by its bits.
-        let scale = bitcast<f32>(((word >> 27u) + 103u) << 23u);
-        return vec3<f32>(f32(word & 0x1ffu), f32((word >> 9u) & 0x1ffu), f32((word >> 18u) & 0x1ffu)) * scale;
-    }
-    return vec3<f32>(f32(word & 0xffu), f32((word >> 8u) & 0xffu), f32((word >> 16u) & 0xffu)) / 255.0;
+    let bits = select(8u, 9u, rgb9e5);
+    let mask = (1u << bits) - 1u;
+    // What stands for 1: 255, or 2^(15 + 9 - exponent) by its bits.
+    let one = select(255.0, bitcast<f32>((151u - (word >> 27u)) << 23u), rgb9e5);
+    return vec3<f32>(f32(word & mask), f32((word >> bits) & mask), f32((word >> (2u * bits)) & mask)) / one;
 }

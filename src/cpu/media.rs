@@ -5,7 +5,7 @@ use crate::cpu::geometry::bvh::{mist_intersect, scene_intersect};
 use crate::cpu::geometry::hit::{Hit, Surface};
 use crate::cpu::geometry::instance::surface_at;
 use crate::cpu::math::offset::offset_ray_origin;
-use crate::cpu::path::T_INFINITY;
+use crate::cpu::ray::T_INFINITY;
 use crate::cpu::shading::material::media_enter;
 use crate::cpu::shading::medium::{beyond_boundary, mist_cross};
 use crate::renderer::Tally;

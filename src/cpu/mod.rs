@@ -2,11 +2,13 @@
 
 pub mod bindings;
 pub mod camera;
+pub mod dimensions;
 pub mod film;
 pub mod geometry;
 pub mod math;
 pub mod media;
 pub mod path;
+pub mod ray;
 pub mod shading;
 
 mod renderer;

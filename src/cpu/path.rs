@@ -2,6 +2,7 @@
 
 use crate::cpu::bindings::Bindings;
 use crate::cpu::camera::CameraRay;
+use crate::cpu::dimensions::{BRANCH_REFLECTED, BRANCH_REFRACTED, DIMENSION_CHOICE, DIMENSION_GLOSSY, DIMENSION_MIST};
 use crate::cpu::geometry::bvh::{mist_intersect, scene_intersect, scene_occluded};
 use crate::cpu::geometry::hit::{Hit, Surface};
 use crate::cpu::geometry::instance::surface_at;
@@ -9,6 +10,7 @@ use crate::cpu::math::elementary::unit_vector;
 use crate::cpu::math::offset::offset_ray_origin;
 use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::math::sampling::{keep_above, sample_glossy};
+use crate::cpu::ray::{Ray, T_INFINITY};
 use crate::cpu::shading::background::background;
 use crate::cpu::shading::detail::surface_detail;
 use crate::cpu::shading::light::{SHADOW_T_MAX, light_sample, light_sample_range};
@@ -18,43 +20,9 @@ use crate::cpu::shading::material::{
 use crate::cpu::shading::medium::{
     MIST_CROSSINGS, beyond_boundary, choose_mist, free_flight, mist_cross, mist_density, mist_event, mists_density,
 };
-use crate::layout::{FRAME_TRANSPARENT, Material, RAY_REFLECTED, RAY_REFRACTED, RAY_SHADOW, STATUS_LOOP_BOUND};
+use crate::layout::{FRAME_TRANSPARENT, Material, RAY_REFLECTED, RAY_REFRACTED, RAY_SHADOW, STATUS_MIST_CROSSINGS};
 use crate::renderer::Tally;
 use glam::{UVec2, Vec2, Vec3, Vec4};
-
-pub const DIMENSION_PIXEL: u32 = 1;
-pub const DIMENSION_LENS: u32 = 2;
-pub const DIMENSION_GLOSSY: u32 = 3;
-pub const DIMENSION_CHOICE: u32 = 4;
-pub const DIMENSION_LIGHT_CHOICE: u32 = 5;
-pub const BRANCH_REFLECTED: u32 = 6;
-pub const BRANCH_REFRACTED: u32 = 7;
-pub const DIMENSION_MIST: u32 = 8;
-/// Light i has the dimension `DIMENSION_LIGHT + i`.
-pub const DIMENSION_LIGHT: u32 = 16;
-
-pub const T_INFINITY: f32 = 3.0e38;
-
-/// A ray of the tree. It has no weight: the recursion multiplies on the way back.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
-    pub origin: Vec3,
-    /// Where it is as to mist: the point of the surface that it leaves, without the offset, which might skip a boundary.
-    pub start: Vec3,
-    /// Unit.
-    pub direction: Vec3,
-    /// The refractive media and the mists that it is in.
-    pub media: UVec2,
-    pub mists: UVec2,
-    /// Width of what it stands for at its origin, world units, and how that grows a world unit: a ray cone
-    /// (Akenine-Möller et al., Ray Tracing Gems ch. 20).
-    pub cone_width: f32,
-    pub cone_spread: f32,
-    /// Number among the samples that share `key`, and the key of its random decisions.
-    pub index: u32,
-    pub key: u32,
-    pub depth: u32,
-}
 
 /// The shares of reflected and refracted light at a surface, and where the refracted ray goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -218,7 +186,7 @@ fn fly(scene: &Bindings, ray: &Ray, hit: Hit, tally: &mut Tally) -> Arrival {
         origin = beyond_boundary(surface.point, origin, ray.direction, met.t, material.mist_step);
         left -= met.t + material.mist_step;
     }
-    tally.flags |= STATUS_LOOP_BOUND;
+    tally.flags |= STATUS_MIST_CROSSINGS;
     Arrival::Surface(mists)
 }
 
@@ -280,7 +248,7 @@ pub fn path_radiance(
         media: scene.frame.medium,
         mists: scene.frame.mist,
         cone_width: 0.0,
-        cone_spread: scene.frame.pixel_spread,
+        cone_spread: camera.spread,
         index: sample_index,
         key: camera.key,
         depth: 0,

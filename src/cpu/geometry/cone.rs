@@ -1,7 +1,7 @@
 //! The closed cone x² + z² ≤ y² for y in [-1, 0]; twin of `shaders/geometry/cone.wgsl`, where the method is explained.
 
 use super::hit::{MISS, Parameterisation, ShapeHit};
-use super::revolution::{cap_parameterise, revolution};
+use super::revolution::{Revolution, cap_parameterise};
 use crate::cpu::math::roots::{FAR, TINY, quadratic_roots, safe_reciprocal};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_SQRT_2;
@@ -79,11 +79,10 @@ pub fn cone_normal(point: Vec3, face: u32) -> Vec3 {
 
 /// Around the axis to the right and from the apex downwards; the cap by x and z.
 #[inline]
-pub fn cone_parameterise(point: Vec3, face: u32) -> Parameterisation {
+pub fn cone_parameterise(point: Vec3, face: u32, around: Revolution) -> Parameterisation {
     if face != CONE_SIDE {
         return cap_parameterise(point, -1.0);
     }
-    let around = revolution(point);
     let dpdv = Vec3::new(around.radial.x, -1.0, around.radial.z);
     Parameterisation { uv: Vec2::new(around.u, -point.y), dpdu: around.dpdu, dpdv }
 }

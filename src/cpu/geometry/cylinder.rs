@@ -2,7 +2,7 @@
 //! inside both the infinite cylinder and the slab between the caps for one interval.
 
 use super::hit::{MISS, Parameterisation, ShapeHit};
-use super::revolution::{cap_parameterise, revolution};
+use super::revolution::{Revolution, cap_parameterise};
 use crate::cpu::math::roots::{FAR, quadratic_roots, safe_reciprocal};
 use glam::{Vec2, Vec3};
 
@@ -71,11 +71,10 @@ pub fn cylinder_normal(point: Vec3, face: u32) -> Vec3 {
 
 /// Around the axis to the right and along it downwards; the caps by x and z.
 #[inline]
-pub fn cylinder_parameterise(point: Vec3, face: u32) -> Parameterisation {
+pub fn cylinder_parameterise(point: Vec3, face: u32, around: Revolution) -> Parameterisation {
     if face != CYLINDER_SIDE {
         return cap_parameterise(point, if face == CYLINDER_TOP { 1.0 } else { -1.0 });
     }
-    let around = revolution(point);
     let v = 0.5 - point.y * 0.5;
     Parameterisation { uv: Vec2::new(around.u, v), dpdu: around.dpdu, dpdv: Vec3::new(0.0, -2.0, 0.0) }
 }

@@ -7,6 +7,7 @@ use super::cylinder::cylinder_parameterise;
 use super::hit::{Hit, Parameterisation, Surface};
 use super::instance::{transform_point, transform_vector};
 use super::plane::plane_parameterise;
+use super::revolution::revolution;
 use super::sphere::sphere_parameterise;
 use super::torus::torus_parameterise;
 use super::triangle::triangle_parameterise;
@@ -20,12 +21,13 @@ use glam::{Vec2, Vec3, Vec4Swizzles};
 pub fn parameterise_at(scene: &Bindings, hit: Hit, surface: Surface) -> Parameterisation {
     let instance = &scene.instances[hit.instance as usize];
     let point = transform_point(&instance.object_from_world, surface.point);
+    let around = revolution(point);
     let result = match instance.shape {
-        SHAPE_SPHERE => sphere_parameterise(point, hit.primitive),
+        SHAPE_SPHERE => sphere_parameterise(point, hit.primitive, around),
         SHAPE_CUBE => cube_parameterise(point, hit.primitive),
-        SHAPE_CYLINDER => cylinder_parameterise(point, hit.primitive),
-        SHAPE_CONE => cone_parameterise(point, hit.primitive),
-        SHAPE_TORUS => torus_parameterise(point, hit.primitive, instance.parameters.xy()),
+        SHAPE_CYLINDER => cylinder_parameterise(point, hit.primitive, around),
+        SHAPE_CONE => cone_parameterise(point, hit.primitive, around),
+        SHAPE_TORUS => torus_parameterise(point, hit.primitive, around, instance.parameters.xy()),
         SHAPE_PLANE => plane_parameterise(point, hit.primitive),
         SHAPE_MESH => {
             let Triangle { p0, p1, p2, uv0, uv1, uv2, .. } = scene.triangles[hit.primitive as usize];

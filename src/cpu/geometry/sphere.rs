@@ -1,7 +1,7 @@
 //! The unit sphere about the origin; twin of `shaders/geometry/sphere.wgsl`.
 
 use super::hit::{MISS, Parameterisation, ShapeHit};
-use super::revolution::revolution;
+use super::revolution::Revolution;
 use crate::cpu::math::elementary::atan2_poly;
 use crate::cpu::math::roots::quadratic_roots;
 use glam::{Vec2, Vec3};
@@ -41,8 +41,7 @@ pub fn sphere_normal(point: Vec3, _face: u32) -> Vec3 {
 
 /// Longitude to the right and latitude downwards; the seam is at -x.
 #[inline]
-pub fn sphere_parameterise(point: Vec3, _face: u32) -> Parameterisation {
-    let around = revolution(point);
+pub fn sphere_parameterise(point: Vec3, _face: u32, around: Revolution) -> Parameterisation {
     // The latitude is asin(y), in the form that keeps its digits near the poles.
     let v = 0.5 - atan2_poly(point.y, around.rho) * FRAC_1_PI;
     let rise = point.y * PI;

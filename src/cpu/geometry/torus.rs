@@ -1,7 +1,7 @@
 //! The torus about the y axis; twin of `shaders/geometry/torus.wgsl`, where the method is explained.
 
 use super::hit::{MISS, Parameterisation, ShapeHit};
-use super::revolution::revolution;
+use super::revolution::Revolution;
 use crate::cpu::math::elementary::atan2_poly;
 use crate::cpu::math::roots::{FAR, TINY, cube_root, safe_reciprocal};
 use glam::{Vec2, Vec3};
@@ -140,8 +140,7 @@ pub fn torus_normal(point: Vec3, _face: u32, radii: Vec2) -> Vec3 {
 
 /// Around the axis to the right and around the tube downwards from its inner side, where the seam of v is.
 #[inline]
-pub fn torus_parameterise(point: Vec3, _face: u32, radii: Vec2) -> Parameterisation {
-    let around = revolution(point);
+pub fn torus_parameterise(point: Vec3, _face: u32, around: Revolution, radii: Vec2) -> Parameterisation {
     let e = around.rho - radii.x;
     let v = 0.5 - atan2_poly(point.y, e) * (0.5 * FRAC_1_PI);
     let rise = point.y * TAU;

@@ -1,11 +1,12 @@
 //! Lights: where shadow rays aim, and what arrives; twin of `shaders/shading/light.wgsl`.
 
 use crate::cpu::bindings::Bindings;
+use crate::cpu::dimensions::{DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE};
 use crate::cpu::geometry::hit::Surface;
 use crate::cpu::math::offset::offset_ray_origin;
 use crate::cpu::math::rng::{hash_combine, sobol_2d};
 use crate::cpu::math::sampling::sample_cone;
-use crate::cpu::path::{DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, Ray};
+use crate::cpu::ray::Ray;
 use crate::cpu::shading::material::phong;
 use crate::cpu::shading::medium::is_mist_event;
 use crate::layout::{FRAME_BLINN, Frame, LIGHT_PARALLELOGRAM, LIGHT_POINT, Light, Material};
@@ -24,14 +25,15 @@ pub fn sample_light(light: &Light, point: Vec3, xi: Vec2) -> Vec3 {
     let to_centre = light.position - point;
     let distance_squared = to_centre.dot(to_centre);
     let radius_squared = light.radius * light.radius;
-    if distance_squared <= radius_squared {
-        return light.position + light.radius * sample_cone(Vec3::Z, 2.0, xi);
-    }
+    let inside = distance_squared <= radius_squared;
     // 1 - cos of the cone that touches the ball, without cancellation (pbrt-v4, section 6.2.4).
     let sine_squared = radius_squared / distance_squared;
-    let one_minus_cos = sine_squared / (1.0 + (1.0 - sine_squared).sqrt());
-    let axis = to_centre / distance_squared.sqrt();
+    let one_minus_cos = if inside { 2.0 } else { sine_squared / (1.0 + (1.0 - sine_squared).sqrt()) };
+    let axis = if inside { Vec3::Z } else { to_centre / distance_squared.sqrt() };
     let direction = sample_cone(axis, one_minus_cos, xi);
+    if inside {
+        return light.position + light.radius * direction;
+    }
     let along = direction.dot(to_centre);
     let half_chord = (radius_squared - (distance_squared - along * along).max(0.0)).max(0.0).sqrt();
     point + (along - half_chord) * direction

@@ -58,19 +58,18 @@ pub fn media_enter(media: UVec2, medium: u32) -> UVec2 {
 }
 
 pub fn media_leave(media: UVec2, medium: u32) -> UVec2 {
-    if media.x & 0xffff == medium {
-        return UVec2::new((media.x >> 16) | (media.y << 16), media.y >> 16);
-    }
-    if media.x >> 16 == medium {
-        return UVec2::new((media.x & 0xffff) | (media.y << 16), media.y >> 16);
-    }
-    if media.y & 0xffff == medium {
-        return UVec2::new(media.x, media.y >> 16);
-    }
-    if media.y >> 16 == medium {
-        return UVec2::new(media.x, media.y & 0xffff);
-    }
-    media
+    let first = media.x & 0xffff;
+    let second = media.x >> 16;
+    let third = media.y & 0xffff;
+    let fourth = media.y >> 16;
+    let from_first = first == medium;
+    let from_second = from_first || second == medium;
+    let from_third = from_second || third == medium;
+    let from_fourth = from_third || fourth == medium;
+    UVec2::new(
+        if from_first { second } else { first } | (if from_second { third } else { second } << 16),
+        if from_third { fourth } else { third } | (if from_fourth { 0 } else { fourth } << 16),
+    )
 }
 
 /// Refractive index at a point within these media; 1 outside them all.

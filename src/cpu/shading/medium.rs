@@ -3,7 +3,7 @@
 use crate::cpu::bindings::Bindings;
 use crate::cpu::geometry::hit::Surface;
 use crate::cpu::math::elementary::log2_poly;
-use crate::cpu::path::T_INFINITY;
+use crate::cpu::ray::T_INFINITY;
 use crate::cpu::shading::material::{media_contains, media_enter, media_leave};
 use glam::{UVec2, Vec3};
 
@@ -53,22 +53,18 @@ pub fn free_flight(density: f32, xi: f32) -> f32 {
     -std::f32::consts::LN_2 * log2_poly(1.0 - xi) / density
 }
 
-/// Which of the mists scatters, in proportion to their densities.
+/// Which of the mists scatters, in proportion to their densities. Numbers of 0 come last and have no share.
 pub fn choose_mist(scene: &Bindings, mists: UVec2, xi: f32) -> u32 {
-    let mut left = xi * mists_density(scene, mists);
-    left -= mist_density(scene, mists.x & 0xffff);
-    if left < 0.0 || mists.x >> 16 == 0 {
-        return mists.x & 0xffff;
-    }
-    left -= mist_density(scene, mists.x >> 16);
-    if left < 0.0 || mists.y & 0xffff == 0 {
-        return mists.x >> 16;
-    }
-    left -= mist_density(scene, mists.y & 0xffff);
-    if left < 0.0 || mists.y >> 16 == 0 {
-        return mists.y & 0xffff;
-    }
-    mists.y >> 16
+    let second = mists.x >> 16;
+    let third = mists.y & 0xffff;
+    let fourth = mists.y >> 16;
+    let to_first = mist_density(scene, mists.x & 0xffff);
+    let to_second = to_first + mist_density(scene, second);
+    let to_third = to_second + mist_density(scene, third);
+    let aim = xi * (to_third + mist_density(scene, fourth));
+    let chosen = if second != 0 && aim >= to_first { second } else { mists.x & 0xffff };
+    let later = if third != 0 && aim >= to_second { third } else { chosen };
+    if fourth != 0 && aim >= to_third { fourth } else { later }
 }
 
 /// A scattering event as `light_sample` takes it: a surface without a normal. `number` is that of a mist, not 0.

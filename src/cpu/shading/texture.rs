@@ -23,13 +23,14 @@ pub fn texture_lookup(scene: &Bindings, image: u32, uv: Vec2, footprint: f32) ->
     let width = (footprint * size.x.max(size.y)).clamp(1.0, 16_777_216.0);
     let level = log2_poly(width).min(last as f32);
     let finer = level.floor();
-    let fine = texture_level(scene, image, (finer as u32).min(last), uv);
     let blend = level - finer;
-    if blend <= 0.0 {
-        return fine;
+    let levels = if blend > 0.0 { 2 } else { 1 };
+    let mut colour = Vec3::ZERO;
+    for i in 0..levels {
+        let found = texture_level(scene, image, (finer as u32 + i).min(last), uv);
+        colour = if i == 0 { found } else { mix_texels(colour, found, blend) };
     }
-    let coarse = texture_level(scene, image, (finer as u32 + 1).min(last), uv);
-    fine + (coarse - fine) * blend
+    colour
 }
 
 /// The radiance from a direction in an equirectangular picture: its middle is towards -z, its top row straight up.
@@ -57,12 +58,17 @@ fn texture_level(scene: &Bindings, image: u32, level: u32, uv: Vec2) -> Vec3 {
     let right = texel_after(x0, width);
     let below = texel_after(y0, height);
     let left = if right == 0 { width } else { right } - 1;
-    let above = start + (if below == 0 { height } else { below } - 1) * width;
-    let under = start + below * width;
+    let above = if below == 0 { height } else { below } - 1;
     let texel = |index: u32| texel_colour(texels[index as usize], rgb9e5);
-    let upper = mix_texels(texel(above + left), texel(above + right), x - x0);
-    let lower = mix_texels(texel(under + left), texel(under + right), x - x0);
-    mix_texels(upper, lower, y - y0)
+    // An image of one row has no second to blend with.
+    let rows = if height > 1 { 2 } else { 1 };
+    let mut colour = Vec3::ZERO;
+    for i in 0..rows {
+        let row = start + if i == 0 { above } else { below } * width;
+        let found = mix_texels(texel(row + left), texel(row + right), x - x0);
+        colour = if i == 0 { found } else { mix_texels(colour, found, y - y0) };
+    }
+    colour
 }
 
 /// The texel to the right of coordinate x in [-1, count], repeated. Always below count.
@@ -76,10 +82,9 @@ fn mix_texels(a: Vec3, b: Vec3, t: f32) -> Vec3 {
 }
 
 fn texel_colour(word: u32, rgb9e5: bool) -> Vec3 {
-    if rgb9e5 {
-        // 2^(exponent - 15 - 9), by its bits.
-        let scale = f32::from_bits(((word >> 27) + 103) << 23);
-        return Vec3::new((word & 0x1ff) as f32, ((word >> 9) & 0x1ff) as f32, ((word >> 18) & 0x1ff) as f32) * scale;
-    }
-    Vec3::new((word & 0xff) as f32, ((word >> 8) & 0xff) as f32, ((word >> 16) & 0xff) as f32) / 255.0
+    let bits = if rgb9e5 { 9 } else { 8 };
+    let mask = (1 << bits) - 1;
+    // What stands for 1: 255, or 2^(15 + 9 - exponent) by its bits.
+    let one = if rgb9e5 { f32::from_bits((151 - (word >> 27)) << 23) } else { 255.0 };
+    Vec3::new((word & mask) as f32, ((word >> bits) & mask) as f32, ((word >> (2 * bits)) & mask) as f32) / one
 }
