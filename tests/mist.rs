@@ -5,8 +5,12 @@ use crate::mist_tables::mist;
 use crate::parity::{agrees, compare};
 use crate::support::{BOTH, Stage, paint, render_whole};
 use glam::{DAffine3, DVec3, Vec3};
-use gpu_trace::device::DeviceChoice;
+use gpu_trace::cpu::shading::medium::MIST_CROSSINGS;
+use gpu_trace::device::{DeviceChoice, open_renderer};
+use gpu_trace::flatten::flatten;
+use gpu_trace::render::{RenderOptions, Unattended, render};
 use gpu_trace::scene::{LightExtent, Material, Scene, Shape};
+use std::sync::Arc;
 
 const BLACK: Vec3 = Vec3::ZERO;
 /// Three standard deviations of the mean of 16,384 choices between 0 and 1.
@@ -301,4 +305,27 @@ fn mist_looks_the_same_on_both_devices() {
     shifted.sampling.seed += 1;
     let wrong = render_whole(&shifted, &DeviceChoice::Cpu);
     assert!(!agrees(&compare(&gpu.film, &wrong.film, &scene)), "another seed passes for the same");
+}
+
+#[test]
+fn too_many_boundaries_of_mist_end_the_picture_with_advice() {
+    let sheets = |count: u32| {
+        let mut stage = Stage::new(8, 8);
+        for i in 0..count {
+            let far = -4.0 - 0.1 * f64::from(i);
+            layer(&mut stage, far - 0.05, far, 1e-6, BLACK);
+        }
+        stage.finish()
+    };
+    for device in &BOTH {
+        let outcome = |count| {
+            let buffers = Arc::new(flatten(&sheets(count)).unwrap());
+            let (mut renderer, _) = open_renderer(device, false).unwrap_or_else(|error| panic!("{error}"));
+            let options = RenderOptions::whole(&buffers);
+            render(buffers, renderer.as_mut(), &options, &mut Unattended).map(drop)
+        };
+        let message = outcome(MIST_CROSSINGS / 2 + 8).unwrap_err().to_string();
+        assert!(message.contains("boundaries of mist") && message.contains("fewer shapes"), "{device:?}: {message}");
+        outcome(MIST_CROSSINGS / 2 - 8).unwrap_or_else(|error| panic!("{device:?}: {error}"));
+    }
 }

@@ -403,6 +403,10 @@ fn mist_with_a_surface_is_warned_of() {
             "scene.lua:1: gr.material: with 'density' the shape is mist and has no surface; 'reflection', 'ior' does nothing"
         ]
     );
+    let others = "gr.material{density=0.5, texture=gr.texture('a.png'), casts_shadow=true}";
+    sandbox.write("a.png", include_bytes!("../../assets/dimples.png"));
+    let summary = sandbox.run(others).unwrap();
+    assert!(summary.warnings[0].ends_with("'texture', 'casts_shadow' does nothing"), "{:?}", summary.warnings);
     assert_eq!(sandbox.run("gr.material{density=0.5, diffuse={1,1,1}}").unwrap().warnings, [""; 0]);
     assert!(message("gr.material{density=0.5, bump='gone.png'}").contains("cannot find 'gone.png'"));
 }

@@ -32,8 +32,7 @@ const KEYS: &[&str] = &[
 ];
 
 /// What a volume has no surface for.
-const SURFACE_KEYS: &[&str] =
-    &["reflection", "glossy", "ior", "bump", "noise", "emission", "texture", "casts_shadow"];
+const SURFACE_KEYS: &[&str] = &["reflection", "glossy", "ior", "bump", "noise", "emission", "texture", "casts_shadow"];
 
 /// `gr.material({kd}, {ks}, shininess)`, Phong's; or `gr.material{…}` with any of [`KEYS`].
 fn material(call: &Call) -> Outcome<Value> {
