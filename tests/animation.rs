@@ -3,6 +3,7 @@
 mod batch;
 mod clips;
 mod interrupts;
+mod overlap;
 mod reuse;
 
 use assert_cmd::Command;

@@ -5,8 +5,8 @@
 //! frames n+1 … n+jobs               frame n                  frame n-1
 //! ```
 //! Frames are handed on in their order, whichever is ready first: thread i of k prepares the frames i, i+k, i+2k, … and
-//! waits with each until the renderer takes it, so that no more than `jobs` prepared scenes wait at any time. Errors
-//! travel the same way, which is why they too come in the order of the frames.
+//! waits with each until the renderer takes it, so that of scripts with one picture a frame no more than `jobs` prepared
+//! scenes wait at any time. Errors travel the same way, which is why they too come in the order of the frames.
 
 use crate::flatten::{FlattenCache, SceneBuffers, flatten_with};
 use crate::render::Rendered;
@@ -18,6 +18,10 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::Duration;
+
+/// Messages that a script's thread need not wait with. One, so that the end of a frame, which comes while its picture is
+/// still being rendered, does not keep the thread from the next frame; the scene of that one waits with its thread.
+const WAITING_SCENES: usize = 1;
 
 /// Finished pictures that may wait for the encoder.
 const WAITING_PICTURES: usize = 1;
@@ -96,7 +100,7 @@ pub fn run_batch(
     thread::scope(|scope| {
         let mut scenes = Vec::with_capacity(jobs);
         for job in 0..jobs {
-            let (sender, receiver) = sync_channel(0);
+            let (sender, receiver) = sync_channel(WAITING_SCENES);
             scenes.push(receiver);
             let frames = batch.frames.iter().skip(job).step_by(jobs);
             thread::Builder::new()

@@ -10,7 +10,7 @@ mod range;
 
 pub use batch::{Batch, BatchOutput, Painter, run_batch};
 pub use pattern::{FramePattern, is_whole_png};
-pub use range::FrameRange;
+pub use range::{FrameRange, MAX_FRAMES};
 
 use crate::cpu::math::rng::hash_combine;
 

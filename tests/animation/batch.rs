@@ -142,6 +142,15 @@ fn frames_go_where_the_script_says_but_not_over_each_other() {
 }
 
 #[test]
+fn a_batch_says_each_warning_once() {
+    let scene = swing("scene:add_child(gr.sphere('bare'))");
+    let folder = folder(&scene);
+    let run = program(folder.path(), "scene.lua --frames 1..4 -o %d.png --jobs 2").assert().success();
+    let messages = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
+    assert_eq!(messages.matches("'bare' has no material").count(), 1, "{messages}");
+}
+
+#[test]
 fn arguments_that_do_not_go_together_are_usage_errors() {
     for (line, message) in [
         ("scene.lua 3 --frames 1..2", "--frames"),

@@ -1,5 +1,5 @@
 //! Clips: pictures one after another in one file or stream. To add a format: a variant of [`ClipFormat`], and a file
-//! beside this one with a [`FrameSink`].
+//! beside this one with a `FrameSink`.
 
 mod apng;
 mod gif;
