@@ -5,6 +5,7 @@ use super::console::Console;
 use super::interrupt;
 use super::progress::Bar;
 use super::report::{DeviceReport, Rays, Report, ReportWriter};
+use super::scene_figures::SceneFigures;
 use gpu_trace::device::{DeviceInfo, open_renderer};
 use gpu_trace::film::{Film, OutputFormat, check_writable};
 use gpu_trace::flatten::flatten;
@@ -14,6 +15,7 @@ use gpu_trace::scene::Scene;
 use gpu_trace::script::{ScriptOptions, run_scene};
 use gpu_trace::{Error, Result};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// # Errors
 /// Whatever keeps a picture from being written; [`Error::Scene`] where the script asks for none.
@@ -25,7 +27,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     }
     let report = arguments.json.as_deref().map(ReportWriter::open).transpose()?;
 
-    let mut session = Session { arguments, console, device: None, report, written: 0 };
+    let mut session = Session { arguments, console, device: None, report, written: 0, script_start: Instant::now() };
     let defaults = ScriptOptions::default();
     let options = ScriptOptions {
         frame: arguments.frame,
@@ -55,11 +57,14 @@ struct Session<'a> {
     device: Option<(Box<dyn Renderer>, DeviceInfo)>,
     report: Option<ReportWriter>,
     written: u32,
+    /// When the script began, or went on after a picture.
+    script_start: Instant,
 }
 
 impl Session<'_> {
     /// Renders one picture and writes it.
     fn picture(&mut self, mut scene: Scene) -> Result<()> {
+        let script_seconds = self.script_start.elapsed().as_secs_f64();
         self.apply_arguments(&mut scene)?;
         let format = OutputFormat::from_path(&scene.output)?;
         check_writable("write the picture", &scene.output)?;
@@ -69,7 +74,10 @@ impl Session<'_> {
         if interrupt::requested() {
             return Err(Error::Interrupted);
         }
-        let buffers = Arc::new(flatten(&scene)?);
+        let mut buffers = flatten(&scene)?;
+        buffers.statistics.script_seconds = script_seconds;
+        log::info!("{}", SceneFigures::from(&buffers.statistics));
+        let buffers = Arc::new(buffers);
         let (renderer, info) = match &mut self.device {
             Some((renderer, info)) => (renderer, &*info),
             device @ None => {
@@ -88,10 +96,11 @@ impl Session<'_> {
         self.written += 1;
         let report = report(self.arguments, info, &scene, &rendered);
         self.console.say(&summary(&report));
-        match &mut self.report {
-            Some(writer) => writer.write(&report),
-            None => Ok(()),
+        if let Some(writer) = &mut self.report {
+            writer.write(&report)?;
         }
+        self.script_start = Instant::now();
+        Ok(())
     }
 
     /// What stands on the command line replaces what the scene says.
@@ -158,6 +167,7 @@ fn report<'a>(arguments: &RenderArguments, info: &'a DeviceInfo, scene: &Scene, 
         mrays_per_second: speed,
         passes: rendered.passes,
         longest_submit_seconds: rendered.longest_submit_seconds,
+        figures: SceneFigures::from(&rendered.statistics),
     }
 }
 

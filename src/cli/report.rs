@@ -1,5 +1,6 @@
 //! `--json`: what was rendered, with what and how fast, one object a picture and line.
 
+use super::scene_figures::SceneFigures;
 use gpu_trace::device::DeviceInfo;
 use gpu_trace::film::{check_writable, write_atomically};
 use gpu_trace::layout::{RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_SHADOW};
@@ -35,6 +36,8 @@ pub struct Report<'a> {
     /// Passes that each camera sample was split into.
     pub passes: u32,
     pub longest_submit_seconds: f64,
+    #[serde(flatten)]
+    pub figures: SceneFigures,
 }
 
 impl Report<'_> {
