@@ -24,8 +24,7 @@ fn the_figures_of_a_scene_are_told() {
         root:add_child(gr.sphere('ball'))
         gr.render{ scene = root, output = 'a.png', size = {4, 4}, camera = { eye = {0,0,9}, look_at = {0,0,0} } }";
     fs::write(folder.path().join("scene.lua"), scene).expect("a writable folder");
-    let output = Command::cargo_bin("gpu-trace")
-        .expect("the program")
+    let output = Command::new(env!("CARGO_BIN_EXE_gpu-trace"))
         .current_dir(folder.path())
         .args(["scene.lua", "--device", "cpu", "-v", "--json", "-"])
         .assert()
