@@ -11,6 +11,7 @@ mod progress;
 mod reference;
 mod render;
 mod report;
+mod scene_figures;
 
 use args::{Arguments, Command};
 use clap::Parser;

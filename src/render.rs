@@ -4,7 +4,7 @@ use crate::cpu::bindings::Bindings;
 use crate::cpu::media::{media_at, mists_at};
 use crate::cpu::shading::medium::MIST_CROSSINGS;
 use crate::film::Film;
-use crate::flatten::{SceneBuffers, WorkPlan, plan_work};
+use crate::flatten::{SceneBuffers, Statistics, WorkPlan, plan_work};
 use crate::layout::{Dispatch, Frame, STATUS_LOOP_BOUND, STATUS_MIST_CROSSINGS, STATUS_STACK_FULL};
 use crate::renderer::{Renderer, Tally};
 use crate::{Error, Result};
@@ -90,6 +90,8 @@ pub struct Rendered {
     /// Passes of each sample, the largest over the bands.
     pub passes: u32,
     pub longest_submit_seconds: f64,
+    /// Of the scene.
+    pub statistics: Statistics,
 }
 
 /// Renders the samples of a scene.
@@ -147,6 +149,7 @@ pub fn render(
         warmup_seconds,
         passes: job.plan.pass_count,
         longest_submit_seconds: job.longest_submit.as_secs_f64(),
+        statistics: scene.statistics,
     })
 }
 

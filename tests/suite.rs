@@ -28,6 +28,7 @@ mod noise;
 mod parameterisation;
 mod parity;
 mod roots;
+mod scale;
 mod script;
 mod shaders;
 mod shading_tables;

@@ -17,7 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Messages that a script's thread need not wait with. One, so that the end of a frame, which comes while its picture is
 /// still being rendered, does not keep the thread from the next frame; the scene of that one waits with its thread.
@@ -138,11 +138,17 @@ fn prepare_frames<'a>(
     for &frame in frames {
         let options = ScriptOptions { frame, ..batch.options.clone() };
         let mut pictures = 0;
+        let mut script_start = Instant::now();
         let outcome = run_scene(batch.script, &options, &mut |mut scene| {
+            let script_seconds = script_start.elapsed().as_secs_f64();
             prepare(frame, pictures, &mut scene)?;
             pictures += 1;
-            let buffers = Arc::new(flatten_with(&scene, batch.cache)?);
-            out.send(Prepared::Picture(Box::new((scene, buffers)))).map_err(|_| Error::Interrupted)
+            let mut buffers = flatten_with(&scene, batch.cache)?;
+            buffers.statistics.script_seconds = script_seconds;
+            let picture = Prepared::Picture(Box::new((scene, Arc::new(buffers))));
+            out.send(picture).map_err(|_| Error::Interrupted)?;
+            script_start = Instant::now();
+            Ok(())
         });
         let outcome = outcome.and_then(|summary| match summary.pictures {
             0 => Err(Error::Scene(format!(

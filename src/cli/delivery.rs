@@ -4,6 +4,7 @@ use super::args::RenderArguments;
 use super::console::Console;
 use super::plan::{Destination, Plan};
 use super::report::{DeviceReport, FailureReport, Rays, Report, ReportWriter};
+use super::scene_figures::SceneFigures;
 use gpu_trace::animation::BatchOutput;
 use gpu_trace::device::DeviceInfo;
 use gpu_trace::film::OutputFormat;
@@ -124,6 +125,7 @@ fn report<'a>(
         mrays_per_second: speed,
         passes: rendered.passes,
         longest_submit_seconds: rendered.longest_submit_seconds,
+        figures: SceneFigures::from(&rendered.statistics),
     }
 }
 

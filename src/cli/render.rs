@@ -8,6 +8,7 @@ use super::interrupt;
 use super::plan::{Destination, Plan};
 use super::progress::Bar;
 use super::report::{BatchReport, Reuse};
+use super::scene_figures::SceneFigures;
 use gpu_trace::animation::{Batch, Painter, run_batch, seed_of_frame};
 use gpu_trace::device::{DeviceInfo, open_renderer};
 use gpu_trace::film::{Film, OutputFormat, check_writable};
@@ -150,6 +151,7 @@ impl Studio<'_> {
 impl Painter for Studio<'_> {
     fn paint(&mut self, frame: u32, scene: &Scene, buffers: Arc<SceneBuffers>) -> Result<Rendered> {
         self.check_overwriting(frame, scene)?;
+        log::info!("{}", SceneFigures::from(&buffers.statistics));
         let renderer = match &mut self.renderer {
             Some(renderer) => renderer,
             none => {

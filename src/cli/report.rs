@@ -1,6 +1,7 @@
 //! `--json`: what was rendered, with what and how fast, one object a picture and line, and one at the end of a batch.
 
 use super::plan::Plan;
+use super::scene_figures::SceneFigures;
 use gpu_trace::device::DeviceInfo;
 use gpu_trace::film::{check_writable, write_atomically};
 use gpu_trace::flatten::FlattenCounts;
@@ -40,6 +41,8 @@ pub struct Report<'a> {
     /// Passes that each camera sample was split into.
     pub passes: u32,
     pub longest_submit_seconds: f64,
+    #[serde(flatten)]
+    pub figures: SceneFigures,
 }
 
 impl Report<'_> {

@@ -9,6 +9,7 @@ use crate::scene::{Mesh, Shape};
 use crate::{Error, Result};
 use glam::{DVec3, Vec2, Vec3, Vec3A, Vec4};
 use obvhs::aabb::Aabb;
+use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -66,38 +67,53 @@ const MAX_COORDINATE: f32 = 1e12;
 /// have no normal that single precision can find.
 const MIN_EDGE: f32 = 1e-18;
 
+/// Triangles that one task takes on: whatever is summed up is so in these portions, however many threads there are.
+const PORTION: usize = 4096;
+
 fn build(mesh: &Mesh) -> Result<BuiltMesh> {
     check(mesh)?;
-    let uvs = || mesh.triangles.iter().flatten().map(|&corner| uv(mesh, corner));
-    let uv_min = uvs().fold(Vec2::INFINITY, Vec2::min);
-    let uv_max = uvs().fold(Vec2::NEG_INFINITY, Vec2::max);
-    let (uv_min, uv_extent) = if mesh.uvs.is_empty() || mesh.triangles.is_empty() {
-        (Vec2::ZERO, Vec2::ZERO)
-    } else {
-        (uv_min, uv_max - uv_min)
-    };
-
-    let triangles: Vec<Triangle> =
-        mesh.triangles.iter().filter_map(|corners| pack(mesh, *corners, uv_min, uv_extent)).collect();
+    let (uv_min, uv_extent) = uv_rectangle(mesh);
+    let triangles: Vec<Triangle> = mesh
+        .triangles
+        .par_iter()
+        .with_min_len(PORTION)
+        .filter_map(|corners| pack(mesh, *corners, uv_min, uv_extent))
+        .collect();
     let boxes: Vec<Aabb> = triangles
-        .iter()
+        .par_iter()
+        .with_min_len(PORTION)
         .map(|triangle| {
             let (p0, p1, p2) = (Vec3A::from(triangle.p0), Vec3A::from(triangle.p1), Vec3A::from(triangle.p2));
             Aabb::new(p0.min(p1).min(p2), p0.max(p1).max(p2))
         })
         .collect();
-    let bounds = triangles
+    let bounds = boxes
         .iter()
-        .flat_map(|triangle| [triangle.p0, triangle.p1, triangle.p2])
-        .fold(Bounds::EMPTY, |bounds, point| bounds.extended(point.as_dvec3()));
+        .fold(Bounds::EMPTY, |bounds, own| bounds.extended(own.min.as_dvec3()).extended(own.max.as_dvec3()));
     let hierarchy = bvh::build(&boxes);
     Ok(BuiltMesh {
-        triangles: hierarchy.order.iter().map(|&i| triangles[i as usize]).collect(),
+        triangles: hierarchy.order.par_iter().with_min_len(PORTION).map(|&i| triangles[i as usize]).collect(),
         degenerate: mesh.triangles.len() - triangles.len(),
         bounds,
         uv_rectangle: Vec4::new(uv_min.x, uv_min.y, uv_extent.x, uv_extent.y),
         hierarchy,
     })
+}
+
+/// Least texture coordinates of the corners, and their extent; zeros without any.
+fn uv_rectangle(mesh: &Mesh) -> (Vec2, Vec2) {
+    if mesh.uvs.is_empty() || mesh.triangles.is_empty() {
+        return (Vec2::ZERO, Vec2::ZERO);
+    }
+    let join = |(min, max): (Vec2, Vec2), (low, high): (Vec2, Vec2)| (min.min(low), max.max(high));
+    let none = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+    let of_portion = |triangles: &[[u32; 3]]| {
+        let uvs = triangles.iter().flatten().map(|&corner| uv(mesh, corner));
+        uvs.fold(none, |rectangle, uv| join(rectangle, (uv, uv)))
+    };
+    let portions: Vec<(Vec2, Vec2)> = mesh.triangles.par_chunks(PORTION).map(of_portion).collect();
+    let (min, max) = portions.into_iter().fold(none, join);
+    (min, max - min)
 }
 
 fn check(mesh: &Mesh) -> Result<()> {
@@ -108,20 +124,23 @@ fn check(mesh: &Mesh) -> Result<()> {
             return refuse(format!("{length} {what} for {count} vertices"));
         }
     }
-    if let Some(corner) = mesh.triangles.iter().flatten().find(|&&corner| corner as usize >= count) {
+    let corners = || mesh.triangles.par_iter().with_min_len(PORTION).flatten_iter().copied();
+    if let Some(corner) = corners().find_first(|&corner| corner as usize >= count) {
         return refuse(format!("a triangle refers to vertex {corner}, but there are only {count}"));
     }
-    for &corner in mesh.triangles.iter().flatten() {
-        let position = mesh.positions[corner as usize];
-        if !position.abs().cmple(Vec3::splat(MAX_COORDINATE)).all() {
-            return refuse(format!("vertex {corner} is at {position}; coordinates must lie within ±1e12"));
+    let is_far_position = |corner| !mesh.positions[corner as usize].abs().cmple(Vec3::splat(MAX_COORDINATE)).all();
+    let is_far_uv = |corner| !uv(mesh, corner).abs().cmple(Vec2::splat(MAX_COORDINATE)).all();
+    match corners().find_first(|&corner| is_far_position(corner) || is_far_uv(corner)) {
+        None => Ok(()),
+        Some(corner) if is_far_position(corner) => {
+            let position = mesh.positions[corner as usize];
+            refuse(format!("vertex {corner} is at {position}; coordinates must lie within ±1e12"))
         }
-        let uv = uv(mesh, corner);
-        if !uv.abs().cmple(Vec2::splat(MAX_COORDINATE)).all() {
-            return refuse(format!("vertex {corner} has the texture coordinate {uv}; they must lie within ±1e12"));
+        Some(corner) => {
+            let uv = uv(mesh, corner);
+            refuse(format!("vertex {corner} has the texture coordinate {uv}; they must lie within ±1e12"))
         }
     }
-    Ok(())
 }
 
 fn uv(mesh: &Mesh, corner: u32) -> Vec2 {

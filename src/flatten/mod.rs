@@ -54,14 +54,36 @@ pub struct SceneBuffers {
 pub struct Statistics {
     /// Different meshes, each stored once.
     pub meshes: usize,
+    /// Triangles of those meshes.
+    pub triangles: usize,
+    /// Planes and light sources that show included.
+    pub instances: usize,
     /// Triangles over all instances, as if each were a copy.
     pub instanced_triangles: u64,
     /// Triangles without an area, left out.
     pub degenerate_triangles: usize,
     /// Levels of nodes from the root to the deepest leaf, over both levels of the hierarchy.
     pub depth: u32,
+    /// Of all buffers together.
+    pub buffer_bytes: usize,
+    /// Wall-clock time that the script took to ask for the scene, seconds: set by whoever ran it.
+    pub script_seconds: f64,
     /// Wall-clock time of flattening, seconds.
     pub seconds: f64,
+    /// The share of `seconds` in which meshes were packed and their hierarchies built.
+    pub mesh_seconds: f64,
+}
+
+impl SceneBuffers {
+    /// Bytes of all arrays together.
+    fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice())
+            + size_of_val(self.instances.as_slice())
+            + size_of_val(self.triangles.as_slice())
+            + size_of_val(self.materials.as_slice())
+            + size_of_val(self.lights.as_slice())
+            + size_of_val(self.texels.as_slice())
+    }
 }
 
 /// Flattens a scene: one instance for each path from the root to a geometry node, meshes stored once.
@@ -83,7 +105,9 @@ pub fn flatten_with(scene: &Scene, cache: &FlattenCache) -> Result<SceneBuffers>
     let scene = &*lights::with_visible_lights(scene);
     let placements = walk::placements(scene)?;
     cache.begin_scene();
+    let mesh_start = Instant::now();
     let meshes = mesh::build_all(&placements, cache)?;
+    let mesh_seconds = mesh_start.elapsed().as_secs_f64();
     let mut atlas = atlas::Atlas::new(cache);
     let materials::MaterialsInUse { packed: mut materials, of_placement } =
         materials::materials_in_use(scene, &placements, &mut atlas)?;
@@ -116,10 +140,14 @@ pub fn flatten_with(scene: &Scene, cache: &FlattenCache) -> Result<SceneBuffers>
             instanced_triangles: built.instanced_triangles,
             degenerate_triangles: meshes.built.iter().map(|mesh| mesh.degenerate).sum(),
             depth: built.depth,
-            seconds: 0.0,
+            mesh_seconds,
+            ..Statistics::default()
         },
     };
     buffers.features = FeatureSet::of(&buffers);
+    buffers.statistics.triangles = buffers.triangles.len();
+    buffers.statistics.instances = buffers.instances.len();
+    buffers.statistics.buffer_bytes = buffers.bytes();
     buffers.statistics.seconds = start.elapsed().as_secs_f64();
     Ok(buffers)
 }

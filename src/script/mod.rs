@@ -57,8 +57,9 @@ pub struct ScriptOptions {
 impl ScriptOptions {
     /// Room for some five million triangles given as Lua tables.
     pub const DEFAULT_MEMORY_LIMIT: usize = 2 << 30;
-    /// A few seconds of an empty loop; a million triangles computed one by one take a twentieth of it.
-    pub const DEFAULT_INSTRUCTION_LIMIT: u64 = 500_000_000;
+    /// Some twenty seconds of an empty loop. A million nodes that are each placed by five calls take a third of it, since a
+    /// call counts as 200; a million triangles computed one by one a hundredth.
+    pub const DEFAULT_INSTRUCTION_LIMIT: u64 = 4_000_000_000;
 }
 
 impl Default for ScriptOptions {
