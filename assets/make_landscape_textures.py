@@ -16,20 +16,20 @@ from make_textures import (FOLDER, Cells, Fractal, Noise, fractal3, mix, ramp, r
 
 
 def rock():
-    """Weathered stone in uneven beds, with cracks, dark stains and pale lichen."""
-    warp, beds, grain = Fractal(31, 3, 3, 4), Fractal(32, 2, 14, 3), Fractal(33, 24, 30, 4)
-    stain, lichen, cracks = Fractal(34, 4, 2, 4), Fractal(35, 10, 10, 4), Cells(36, 5, 9, 0.9)
+    """Weathered stone: faint uneven beds, stains that run down, a few cracks and pale lichen."""
+    warp, beds, grain = Fractal(31, 3, 3, 5), Fractal(32, 2, 7, 4), Fractal(33, 22, 26, 4)
+    stain, lichen, cracks = Fractal(34, 9, 2, 4), Fractal(35, 7, 7, 5), Fractal(36, 3, 4, 5)
 
     def shade(x, y):
-        bent = warp.at(x, y)
-        tone = 0.5 + 0.42 * beds.at(x + 0.03 * bent, y + 0.035 * bent) + 0.22 * grain.at(x, y)
-        colour = ramp([(0.0, (0.075, 0.068, 0.060)), (0.4, (0.165, 0.150, 0.128)), (0.7, (0.245, 0.220, 0.180)),
-                       (1.0, (0.33, 0.30, 0.245))], tone)
-        first, second, own = cracks.at(x + 0.05 * bent, y + 0.03 * grain.at(x, y))
-        colour = scaled(colour, (0.88 + 0.24 * own) * (0.45 + 0.55 * step(0.0, 0.09, second - first)))
-        colour = mix(colour, (0.055, 0.052, 0.040), 0.65 * step(0.15, 0.8, stain.at(x, y)))
-        spots = step(0.42, 0.62, lichen.at(x, y))
-        return mix(colour, (0.30, 0.31, 0.20), 0.55 * spots)
+        bent, g = warp.at(x, y), grain.at(x, y)
+        tone = 0.5 + 0.36 * beds.at(x + 0.06 * bent, y + 0.08 * bent) + 0.26 * g + 0.15 * bent
+        colour = ramp([(0.0, (0.060, 0.056, 0.052)), (0.4, (0.125, 0.115, 0.102)), (0.7, (0.190, 0.172, 0.145)),
+                       (1.0, (0.27, 0.245, 0.20))], tone)
+        crack = abs(cracks.at(x + 0.05 * bent, y + 0.02 * g))
+        colour = scaled(colour, 0.42 + 0.58 * step(0.0, 0.045, crack))
+        colour = mix(colour, (0.042, 0.041, 0.036), 0.75 * step(0.10, 0.75, stain.at(x + 0.02 * bent, y)))
+        spots = step(0.40, 0.66, lichen.at(x, y) + 0.1 * g)
+        return mix(colour, (0.20, 0.21, 0.13), 0.5 * spots)
     return render(512, 512, shade, 127), 3
 
 
@@ -96,9 +96,9 @@ def afternoon():
         d = (math.cos(height) * math.sin(azimuth), math.sin(height), -math.cos(height) * math.cos(azimuth))
         up = max(0.0, d[1])
         near = max(0.0, sum(a * b for a, b in zip(d, sun)) / size)
-        low = mix((0.80, 0.66, 0.52), (0.98, 0.74, 0.44), near ** 2)
-        colour = ramp([(0.0, low), (0.10, mix(low, (0.62, 0.66, 0.70), 0.55)), (0.32, (0.33, 0.48, 0.72)),
-                       (1.0, (0.10, 0.22, 0.50))], up ** 0.85)
+        low = mix((0.72, 0.60, 0.48), (0.98, 0.74, 0.44), near ** 2)
+        colour = ramp([(0.0, low), (0.14, mix(low, (0.56, 0.60, 0.66), 0.55)), (0.40, (0.25, 0.40, 0.66)),
+                       (1.0, (0.08, 0.19, 0.46))], up ** 0.85)
         spread = 1 / (0.25 + up)
         n = fractal3(cloud, 2.1 * d[0] * spread + 7, 2.0, 2.1 * d[2] * spread, 5, 0.52)
         torn = fractal3(wisp, 1.1 * d[0] * spread, 5.0, 2.6 * d[2] * spread + 3, 4, 0.5)

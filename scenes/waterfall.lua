@@ -7,8 +7,8 @@
 local quality = 'preview' -- or 'preview': fewer plants, 640x360, four samples, under a minute on two CPU cores
 
 local levels = {
-  full = { size = { 1280, 720 }, samples = 64, grid = 1, grass = 15000, trees = 1, strands = 620, foam = 2600, drops = 700, cell = 0.085 },
-  preview = { size = { 640, 360 }, samples = 4, grid = 0.6, grass = 6000, trees = 0.6, strands = 400, foam = 1000, drops = 300, cell = 0.14 },
+  full = { size = { 1280, 720 }, samples = 64, grid = 1, grass = 15000, trees = 1, strands = 2600, foam = 2600, drops = 700, cell = 0.085 },
+  preview = { size = { 640, 360 }, samples = 4, grid = 0.6, grass = 6000, trees = 0.6, strands = 1600, foam = 1000, drops = 300, cell = 0.14 },
 }
 local level = levels[quality]
 local time = gr.frame_cmd() / 25
@@ -31,7 +31,6 @@ local scene = gr.node('scene')
 local rock = gr.material { texture = 'assets/rock.png', bump = 'assets/rock.png', specular = { 0.02, 0.02, 0.02 }, shininess = 10 }
 local wet_rock = gr.material { diffuse = { 0.045, 0.046, 0.042 }, specular = { 0.25, 0.25, 0.25 }, shininess = 40, bump = 'assets/rock.png' }
 local moss = gr.material { texture = 'assets/forest-floor.png', bump = 'assets/forest-floor.png' }
-local bright_moss = gr.material { diffuse = { 0.085, 0.125, 0.018 }, bump = 'assets/forest-floor.png' }
 local bed = gr.material { texture = 'assets/pebbles.png', bump = 'assets/pebbles.png' }
 local far_green = gr.material { diffuse = { 0.05, 0.075, 0.025 } }
 
@@ -45,7 +44,7 @@ end, scene)
 local height_at = terrain.lookup(ground, grid, grid)
 
 local cliff = terrain.cliff(-32, 36, math.floor(330 * level.grid), math.floor(110 * level.grid))
-cliff:split('cliff', { rock = rock, wet = wet_rock, moss = bright_moss }, function(_, ny, _, x, y, z)
+cliff:split('cliff', { rock = rock, wet = wet_rock, moss = moss }, function(_, ny, _, x, y, z)
   local patch = gr.noise(0.5 * x, 0.7 * y, 0.3 * z) + 0.5 * gr.noise(1.7 * x, 1.7 * y, 1.7 * z)
   if ny > 0.62 - 0.35 * patch and math.abs(x - fall.x) > 1.2 then return 'moss' end
   if math.abs(x - fall.x) < 2.3 + 0.9 * patch or y < 0.35 + 0.3 * patch then return 'wet' end
@@ -100,19 +99,32 @@ local pool = water.pool(-13, 20, -9.2, 13.4, level.cell, time):node('pool', gr.m
 scene:add_child(pool)
 -- The water's own colour: light that it scatters on the way to the bed.
 local depth = gr.cube('depth')
-depth:set_material(gr.material { diffuse = { 0.030, 0.085, 0.070 }, density = 0.38 })
+depth:set_material(gr.material { diffuse = { 0.022, 0.060, 0.044 }, density = 0.7 })
 depth:translate(-0.5, -1, -0.5)
 depth:scale(44, 4, 34)
 depth:translate(3, -0.16, 3)
 scene:add_child(depth)
 
-local body = water.sheet(40, 60, time, 0.93):node('sheet', gr.material {
-  diffuse = { 0.26, 0.33, 0.36 }, specular = { 0.3, 0.3, 0.3 }, shininess = 30,
-})
-scene:add_child(body)
-local whites = { { 0.50, 0.57, 0.60 }, { 0.68, 0.73, 0.75 }, { 0.85, 0.88, 0.88 } }
-for k, mesh in ipairs(water.strands(level.strands, #whites, time)) do
-  scene:add_child(mesh:node('strands', gr.material { diffuse = whites[k], specular = { 0.2, 0.2, 0.2 }, shininess = 20, casts_shadow = k > 2 }))
+local side = { x = 1.3, width = 0.42, lip_y = 6.4 }
+side.lip_z = terrain.face(side.x, side.lip_y) + 0.25
+local whites = { { 0.46, 0.53, 0.56 }, { 0.66, 0.71, 0.73 }, { 0.84, 0.86, 0.86 } }
+-- Whole and dark where it bends over the edge, whiter as it breaks up.
+local sheets = {
+  glass = gr.material { diffuse = { 0.06, 0.095, 0.09 }, specular = { 0.5, 0.5, 0.5 }, shininess = 60, reflection = 0.25, glossy = 0.1 },
+  clear = gr.material { diffuse = { 0.17, 0.23, 0.24 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 },
+  torn = gr.material { diffuse = { 0.34, 0.40, 0.42 }, specular = { 0.2, 0.2, 0.2 }, shininess = 20 },
+}
+for _, falls in ipairs { { fall, level.strands, 0.036 }, { side, 110, 0.016 } } do
+  local f = falls[1]
+  water.sheet(f, 70, 70, time, 0.9):split('sheet', sheets, function(_, _, _, x, y)
+    local broken = (f.lip_y - y) / f.lip_y + 0.22 * gr.noise(4.5 * x, 0.5 * y, 0.5) + 0.10 * gr.noise(13 * x, 1.1 * y, 3.5)
+    return broken < 0.10 and 'glass' or broken < 0.32 and 'clear' or 'torn'
+  end, scene)
+  for k, mesh in ipairs(water.strands(f, falls[2], #whites, falls[3], time)) do
+    scene:add_child(mesh:node('strands', gr.material {
+      diffuse = whites[k], specular = { 0.2, 0.2, 0.2 }, shininess = 20, casts_shadow = false,
+    }))
+  end
 end
 local white = gr.material { diffuse = { 0.80, 0.84, 0.85 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 }
 local drop = gr.sphere('drop')
@@ -122,21 +134,22 @@ water.drops(level.drops, time, bubble)
 water.foam(level.foam, time, bubble)
 
 -- Mist: spray about the foot, a thinner cloud above it, and haze between the hills.
+-- A ray may be in four mists at a time: these three, and the water's.
 local function cloud(x, y, z, sx, sy, sz, density, colour)
   local ball = gr.sphere('mist')
-  ball:set_material(gr.material { diffuse = colour or { 0.66, 0.70, 0.72 }, density = density })
+  ball:set_material(gr.material { diffuse = colour or { 0.40, 0.42, 0.43 }, density = density })
   ball:scale(sx, sy, sz)
   ball:translate(x, y, z)
   scene:add_child(ball)
 end
-cloud(fall.x, 0.1, fall.foot_z + 0.2, 2.6, 1.1, 1.3, 0.75)
-cloud(fall.x + 0.5, 0.6, fall.foot_z + 0.8, 4.0, 2.0, 2.2, 0.16)
-cloud(fall.x + 1.6, 1.2, fall.foot_z + 1.2, 6.5, 3.2, 3.4, 0.045)
+cloud(fall.x, 0.1, fall.foot_z + 0.2, 2.7, 1.1, 1.1, 0.50)
+cloud(fall.x + 0.3, 0.5, fall.foot_z + 0.6, 3.6, 2.3, 1.9, 0.15)
+cloud(fall.x + 1.0, 0.8, fall.foot_z + 1.2, 6.5, 3.6, 3.2, 0.05)
 local haze = gr.cube('haze')
-haze:set_material(gr.material { diffuse = { 0.50, 0.52, 0.54 }, density = 0.0065 })
+haze:set_material(gr.material { diffuse = { 0.25, 0.26, 0.28 }, density = 0.0045 })
 haze:translate(-0.5, 0, -1)
-haze:scale(420, 70, 230)
-haze:translate(0, 0.3, -9)
+haze:scale(420, 40, 230)
+haze:translate(0, 0.3, -13)
 scene:add_child(haze)
 
 -------------------------------------------------------------------------------------------------------------- plants
@@ -180,12 +193,15 @@ local function forest(count, x0, x1, z0, z1, spacing, chance, share_of_spruces, 
     place(scene, kinds[math.random(#kinds)], x, height_at(x, z) - 0.1, z, between(low, high), between(0, 360), between(-3, 3), between(-3, 3), between(0.9, 1.15))
   end
 end
+-- One near the viewer, whose boughs frame the picture.
+place(scene, grown({ { height = 8.0, crown = 3.4, radius = 0.26, per_twig = 30, leaf = 0.15 } }, tree.broadleaf, { { 0.095, 0.140, 0.022 } })[1],
+  -3.3, height_at(-3.3, 10.4), 10.4, 1, 200)
 -- On the plateau, open along the river.
-forest(110, -40, 44, -42, 4, 1.9, function(x, z)
+forest(190, -40, 44, -42, 4, 1.6, function(x, z)
   local s = valley.cliff_z(x) - z
   if s < 2.2 then return 0 end
-  return 0.9 * step(2.0, 4.0, math.abs(x - fall.x - 1.5 * step(5, 30, s)))
-end, 0.6, 0.55, 1.0)
+  return 0.9 * step(2.5, 7.0, math.abs(x - fall.x - 1.5 * step(5, 30, s)))
+end, 0.6, 0.4, 0.95)
 -- On the hills.
 forest(420, -150, 150, -190, -40, 3.2, function(x, z) return 0.9 end, 0.75, 0.7, 1.3)
 -- At both sides of the pool.
@@ -204,7 +220,6 @@ for _, p in ipairs(scatter.points { count = 240, tries = 10, x0 = -16, x1 = 18, 
 end }) do
   place(scene, ferns[math.random(3)], p[1], height_at(p[1], p[2]), p[2], between(0.5, 1.15), between(0, 360), between(-8, 8), between(-8, 8))
 end
--- Ferns that hang on the cliff's edge.
 local tufts = {}
 local grass_tints = { { 0.090, 0.140, 0.022 }, { 0.130, 0.165, 0.030 }, { 0.065, 0.120, 0.025 }, { 0.175, 0.165, 0.050 }, { 0.105, 0.150, 0.018 } }
 for k = 1, 10 do
@@ -219,6 +234,24 @@ end }) do
   local meadow = gr.noise(0.35 * x, 0.35 * z, 2.5)
   local k = 1 + math.floor(shape.clamp((meadow + 0.6 + between(-0.3, 0.3)) * 7, 0, 9.99))
   place(scene, tufts[k], x, height_at(x, z), z, between(0.6, 1.2) * (1 + 0.4 * meadow), between(0, 360))
+end
+
+-- On the cliff's ledges and along its edge: grass, ferns and small bushes.
+local p, n = cliff.positions, cliff.normals
+for i = 0, cliff.count - 1 do
+  local x, y, z = p[3 * i + 1], p[3 * i + 2], p[3 * i + 3]
+  local nx, ny, nz = n[3 * i + 1], n[3 * i + 2], n[3 * i + 3]
+  local up = ny / math.sqrt(nx * nx + ny * ny + nz * nz)
+  if up > 0.45 and y > 0.4 and math.abs(x - fall.x) > 2.1 and x > -22 and x < 24 and math.random() < 0.13 / level.grid ^ 2 then
+    local pick = math.random()
+    if pick < 0.70 then
+      place(scene, tufts[math.random(10)], x, y, z, between(0.5, 1.2), between(0, 360), 14)
+    elseif pick < 0.95 then
+      place(scene, ferns[math.random(3)], x, y, z, between(0.4, 1.0), between(0, 360), 20)
+    else
+      place(scene, broadleaves[math.random(#broadleaves)], x, y - 0.1, z, between(0.10, 0.24), between(0, 360), 15)
+    end
+  end
 end
 
 ---------------------------------------------------------------------------------------------------------------- props
@@ -251,15 +284,15 @@ place(scene, bunny, -1.2, height_at(-1.2, 10.4) - 0.02, 10.4, 0.42, 35)
 
 gr.background { image = 'assets/afternoon.png' }
 -- Far away: 2.3 degrees wide, a sun in thin haze. The sky is a ball so large and near that it fills most of the sky.
-local sun = gr.sphere_light { position = { -700, 420, 570 }, radius = 20, colour = { 1.75, 1.36, 0.88 } }
-local sky = gr.sphere_light { position = { 0, 2000, 200 }, radius = 1900, colour = { 0.50, 0.62, 0.82 } }
+local sun = gr.sphere_light { position = { -640, 520, 540 }, radius = 20, colour = { 2.3, 1.80, 1.20 } }
+local sky = gr.sphere_light { position = { 0, 2000, 200 }, radius = 1900, colour = { 0.62, 0.76, 0.98 } }
 
-local eye, focus = { 1.6, 2.35, 15.6 }, { fall.x, 2.5, fall.foot_z }
+local eye, focus = { 1.3, 2.9, 16.6 }, { fall.x, 2.5, fall.foot_z }
 gr.render {
   scene = scene, output = 'waterfall.png', size = level.size, samples = level.samples, transfer = 'srgb', max_depth = 4,
   camera = {
-    eye = eye, look_at = { -0.5, 3.0, -8 }, fov = 41, lens = 0.09,
+    eye = eye, look_at = { -0.5, 3.35, -8 }, fov = 37, lens = 0.05,
     focus = math.sqrt((eye[1] - focus[1]) ^ 2 + (eye[2] - focus[2]) ^ 2 + (eye[3] - focus[3]) ^ 2),
   },
-  lights = { sun, sky }, ambient = { 0.16, 0.18, 0.20 },
+  lights = { sun, sky }, ambient = { 0.20, 0.22, 0.24 },
 }

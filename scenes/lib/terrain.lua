@@ -52,38 +52,43 @@ function terrain.lookup(mesh, columns, rows)
   end
 end
 
---- How far the rock stands out at (x, y): beds of stone with ledges, upright cracks between blocks, and roughness.
+--- How far the rock stands out at (x, y): buttresses and gullies, beds of stone with ledges, blocks, and roughness.
 local function relief(x, y)
-  local bed = y + 0.5 * fractal(0.22 * x, 0.15 * y, 3.1, 2)
-  local layer = bed / 0.9 + 0.35 * math.sin(1.7 * bed)
-  local within = layer - math.floor(layer)
+  local bed = y + 0.9 * fractal(0.13 * x, 0.15 * y, 3.1, 3)
+  local layer = bed / 1.15 + 0.5 * math.sin(1.3 * bed)
   local number = math.floor(layer)
-  local ledge = 0.38 * gr.noise(0.35 * x + 7.7 * number, 2.3 * number, 0.5) + 0.10 * step(0, 0.25, within) - 0.16 * step(0.8, 1, within)
-  local block = 0.26 * gr.noise(0.9 * x + 3.3 * number, 0.25 * bed, 1.5 * number + 0.5)
-  local buttress = 1.9 * (ridged(0.16 * x, 0.07 * y, 5.5, 2) - 0.5)
-  return buttress + ledge + block + 0.10 * fractal(1.7 * x, 1.7 * y, 6.1, 3)
+  local within = layer - number
+  local ledge = 0.75 * gr.noise(0.23 * x + 7.7 * number, 2.3 * number, 0.5) - 0.22 * step(0.7, 1, within) * (1 + gr.noise(0.5 * x, 3.1 * number, 0.5))
+  local block = 0.5 * gr.noise(0.75 * x + 3.3 * number, 0.3 * bed, 1.5 * number + 0.5)
+  local buttress = 3.6 * (ridged(0.11 * x + 0.06 * y, 0.04 * y, 5.5, 3) - 0.5)
+  local crag = 0.8 * (ridged(0.45 * x, 0.30 * y + 0.1 * x, 2.5, 3) - 0.5)
+  return buttress + ledge + block + crag + 0.13 * fractal(1.7 * x, 1.7 * y, 6.1, 3)
+end
+
+--- Depth z of the cliff's face at (x, y); `t` is the height's share of the cliff's, above 1 beyond the edge.
+local function face(x, y, t)
+  local behind = math.exp(-((x - valley.fall.x) / 2.7) ^ 4)
+  local back = t < 1 and 1.6 * t or 1.6 + 34 * (t - 1) ^ 1.3
+  local out = relief(x, y) * (1 - 0.75 * step(0.97, 1.08, t)) * (1 - 0.8 * behind)
+  local talus = 1.8 * (1 - step(-0.5, 2.6, y + 0.8 * gr.noise(0.3 * x, 0.5, 0.5))) * (1 - behind)
+  return valley.cliff_z(x) + 1.1 + out + talus - back
+end
+
+function terrain.face(x, y)
+  return face(x, y, (y + 2.5) / (valley.cliff_top(x) + 2.5))
 end
 
 --- The cliff of the valley between x0 and x1: a curtain from below the pool's level to its top, and from there back onto
 --- the plateau.
 function terrain.cliff(x0, x1, columns, rows)
   local mesh = Mesh.new()
-  local fall = valley.fall
   for i = 0, columns do
     local x = shape.mix(x0, x1, i / columns)
-    local foot, top = valley.cliff_z(x), valley.cliff_top(x)
-    local behind = math.exp(-((x - fall.x) / 2.4) ^ 4)
+    local top = valley.cliff_top(x)
     for j = 0, rows do
       local t = 1.16 * j / rows
-      local y, back
-      if t < 1 then
-        y, back = shape.mix(-2.5, top, t), 0.9 * t
-      else
-        y, back = top + 1.0 * (t - 1), 0.9 + 30 * (t - 1) ^ 1.3
-      end
-      local out = relief(x, y) * (1 - 0.75 * step(0.97, 1.08, t)) * (1 - 0.55 * behind)
-      local talus = 1.6 * (1 - step(-0.5, 2.4, y)) * (1 - behind)
-      mesh:vertex(x + 0.25 * gr.noise(0.8 * x, 0.8 * y, 4.5), y, foot + 0.9 + out + talus - back, 0, 0, 1, x / 3.5, -y / 3.5)
+      local y = t < 1 and shape.mix(-2.5, top, t) or top + 1.0 * (t - 1)
+      mesh:vertex(x + 0.25 * gr.noise(0.8 * x, 0.8 * y, 4.5), y, face(x, y, t), 0, 0, 1, x / 6, -y / 6)
     end
   end
   for i = 0, columns - 1 do

@@ -8,7 +8,7 @@ local noise = gr.noise
 local valley = {}
 
 --- Where the water goes over the edge, and where it meets the pool.
-valley.fall = { x = -3.0, width = 3.4, lip_y = 6.5, lip_z = -8.3, foot_z = -6.3 }
+valley.fall = { x = -3.0, width = 3.8, lip_y = 7.3, lip_z = -8.4, foot_z = -6.6 }
 
 --- Metres to the pool's edge: positive in the water, negative on land.
 function valley.inside_pool(x, z)
@@ -32,9 +32,11 @@ end
 
 --- The cliff's height above the pool at x.
 function valley.cliff_top(x)
-  local d = math.abs(x - valley.fall.x)
-  return 7.1 + 0.9 * noise(0.19 * x, 9.1, 2.2) + 0.4 * noise(0.5 * x, 1.1, 6.2) - 0.6 * math.exp(-(d / 2.3) ^ 4)
-    + 0.9 * step(2, 9, d) - 2.2 * step(12, 24, d)
+  local d = x - valley.fall.x
+  local near = math.exp(-(d / 2.5) ^ 4)
+  local line = 8.6 + 1.7 * noise(0.11 * x, 9.1, 2.2) + 0.9 * noise(0.33 * x, 1.1, 6.2) + 0.35 * noise(0.9 * x, 2.1, 4.2)
+    - 0.16 * math.max(0, d) - 3.5 * step(13, 27, math.abs(d))
+  return mix(line, valley.fall.lip_y + 0.05, near)
 end
 
 --- Height of the ground.

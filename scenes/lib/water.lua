@@ -53,7 +53,7 @@ end
 
 --- Where water of the strand `u` (-1 to 1 across the lip) is `t` seconds after it left the edge; before that it comes
 --- over the plateau. The edge is uneven: some strands leave further out and lower than others.
-local function course(u, t)
+local function course(fall, u, t)
   local speed = 1.15 + 0.35 * noise(2.6 * u, 3.3, 0.5)
   local edge_y = fall.lip_y - 0.22 * math.abs(u) ^ 3 + 0.25 * noise(1.9 * u, 0.3, 8.8)
   local x = fall.x + 0.5 * fall.width * u
@@ -64,17 +64,19 @@ local function course(u, t)
 end
 
 --- Seconds from the edge to the pool.
-water.fall_time = math.sqrt(fall.lip_y / 4.9)
+local function fall_time(fall)
+  return math.sqrt(fall.lip_y / 4.9)
+end
 
 --- The body of the fall: a sheet over its width with folds that run down.
-function water.sheet(columns, rows, time, inset)
+function water.sheet(fall, columns, rows, time, inset)
   local mesh = Mesh.new()
   for j = 0, rows do
     local q = j / rows
-    local t = mix(-0.5, water.fall_time + 0.02, q ^ 0.8)
+    local t = mix(-0.5, fall_time(fall) + 0.02, q ^ 0.8)
     for i = 0, columns do
       local u = mix(-1, 1, i / columns) * inset
-      local x, y, z = course(u, t)
+      local x, y, z = course(fall, u, t)
       local fold = 0.13 * noise(5.5 * u, 0.5 * y + 1.5 * time, 0.5) + 0.06 * noise(15 * u, 0.8 * y + 2.6 * time, 1.5)
       mesh:vertex(x, y + (t < 0 and 0.06 or 0) * 0, z - 0.10 + fold * step(-0.3, 0.3, t), 0, 0, 1, u, -y / 2)
     end
@@ -88,44 +90,40 @@ function water.sheet(columns, rows, time, inset)
   return mesh:smooth()
 end
 
---- Strands of white water: ribbons that run down the fall, `count` of them in `kinds` meshes. Each is thin where it
---- begins, and torn to threads towards the foot.
-function water.strands(count, kinds, time)
+--- Strands of white water: ribbons that run down the fall, `count` of them in `kinds` meshes. Near the edge the water is
+--- still whole, so that few begin there; towards the foot each is torn to threads.
+function water.strands(fall, count, kinds, thickness, time)
   local meshes = {}
   for k = 1, kinds do meshes[k] = Mesh.new() end
-  local total = water.fall_time
+  local total = fall_time(fall)
   for i = 1, count do
     local mesh = meshes[1 + i % kinds]
     local u = 2 * ((i + between(-0.5, 0.5)) * 0.6180339887 % 1) - 1
     -- Denser in some tongues of the sheet than in others.
-    u = u + 0.10 * noise(4.2 * u, 0.7, 3.5)
-    local length = between(0.20, 0.75)
+    u = u + 0.13 * noise(4.2 * u, 0.7, 3.5) + 0.06 * noise(11 * u, 0.7, 1.5)
+    local length = between(0.25, 0.8)
     local from = (between(0, total + length) + time) % (total + length) - length
-    local thick = between(0.018, 0.075) * (i % 5 == 0 and 2.0 or 1)
-    local forward = between(-0.04, 0.22)
+    local thick = thickness * between(0.25, 1) ^ 1.5
+    local forward = between(-0.04, 0.24)
     local wobble = between(0, 100)
     local pieces = 26
     local previous
     for k = 0, pieces do
       local t = from + length * k / pieces
-      if t > -0.25 and t < total + 0.03 then
-        local x, y, z = course(u, t)
+      if t > -0.12 and t < total + 0.03 then
+        local x, y, z = course(fall, u, t)
         local q = math.max(0, t / total)
         local ends = math.max(0, math.sin(math.pi * k / pieces)) ^ 0.6
-        local tear = 1 - 0.65 * q * q * (0.5 + 0.5 * noise(wobble, 3 * y, 0.5))
-        local half = thick * ends * tear * (1 + 0.5 * noise(wobble, 1.7 * y, 4.5))
-        x = x + (0.05 + 0.16 * q) * noise(wobble, 0.9 * y, 1.5) + 0.03 * noise(wobble, 4 * y, 6.5)
-        z = z + forward * (0.15 + q) + 0.05 * noise(wobble, 2 * y, 9.5)
-        -- Round across, and turned up where it goes over the edge.
-        local over = t < 0.15 and 1 or 0.25
-        local a = mesh:vertex(x - half, y, z - 0.5 * half, -0.75, over, 0.65)
-        local b = mesh:vertex(x, y, z + 0.35 * half, 0, over, 1)
-        local c = mesh:vertex(x + half, y, z - 0.5 * half, 0.75, over, 0.65)
-        if previous then
-          mesh:quad(previous[1], a, b, previous[2])
-          mesh:quad(previous[2], b, c, previous[3])
-        end
-        previous = { a, b, c }
+        local whole = 0.25 + 0.75 * step(0.02, 0.30, q + 0.25 * noise(wobble, 2.5, 0.5))
+        local half = thick * ends * whole * (1 + 0.6 * noise(wobble, 1.7 * y, 4.5)) * (1 - 0.3 * q)
+        x = x + (0.02 + 0.20 * q) * noise(wobble, 0.9 * y, 1.5) + (0.01 + 0.03 * q) * noise(wobble, 4 * y, 6.5)
+        z = z + forward * (0.10 + q) + 0.05 * q * noise(wobble, 2 * y, 9.5)
+        -- A little round across, and turned up where it goes over the edge.
+        local over = t < 0.15 and 1 or 0.4
+        local a = mesh:vertex(x - half, y, z, -0.35, over, 0.9)
+        local b = mesh:vertex(x + half, y, z, 0.35, over, 0.9)
+        if previous then mesh:quad(previous[1], a, b, previous[2]) end
+        previous = { a, b }
       else
         previous = nil
       end
@@ -145,16 +143,22 @@ function water.drops(count, time, put)
   end
   -- And torn off the sheet on its way down.
   for _ = 1, count do
-    local u, t = between(-1.12, 1.12), (between(0.35, 1) * water.fall_time + time) % water.fall_time
-    local x, y, z = course(u, t)
-    local q = t / water.fall_time
+    local u, t = between(-1.12, 1.12), (between(0.35, 1) * fall_time(fall) + time) % fall_time(fall)
+    local x, y, z = course(fall, u, t)
+    local q = t / fall_time(fall)
     local radius, aside, forward = between(0.005, 0.018), between(-0.35, 0.35), between(-0.1, 0.5)
     if q > 0.3 then put(x + aside * q, y, z + forward * q, radius) end
   end
 end
 
---- Calls `put(x, y, z, radius)` for bubbles of foam that drift from the foot.
+--- Calls `put(x, y, z, radius)` for foam: a line that boils under the fall, and bubbles that drift from there.
 function water.foam(count, time, put)
+  for _ = 1, count do
+    local u, out = between(-1.15, 1.15), between(-0.25, 0.8)
+    local x, z = fall.x + 0.56 * fall.width * u, fall.foot_z + out
+    local boil = 0.30 * math.exp(-(out / 0.4) ^ 2) * (0.7 + 0.6 * noise(1.5 * x, 2.2 * time, 2 * z))
+    put(x, water.wave(x, z, time) + boil * math.random(), z, between(0.02, 0.075))
+  end
   for _ = 1, count do
     local r, angle = 0.35 + 4.8 * between(0, 1) ^ 2.0, between(-0.35, math.pi + 0.35)
     local x, z = fall.x + (1.2 + r) * math.cos(angle) * 1.15, fall.foot_z + (0.15 + r) * math.sin(angle) - 0.2
