@@ -99,22 +99,27 @@ local pool = water.pool(-13, 20, -9.2, 13.4, level.cell, time):node('pool', gr.m
 scene:add_child(pool)
 -- The water's own colour: light that it scatters on the way to the bed.
 local depth = gr.cube('depth')
-depth:set_material(gr.material { diffuse = { 0.022, 0.060, 0.044 }, density = 0.7 })
+depth:set_material(gr.material { diffuse = { 0.020, 0.058, 0.042 }, density = 0.48 })
 depth:translate(-0.5, -1, -0.5)
 depth:scale(44, 4, 34)
 depth:translate(3, -0.16, 3)
 scene:add_child(depth)
 
+-- A rock on the edge parts the water.
+local left = { x = -3.75, width = 2.5, lip_y = 7.3, lip_z = fall.lip_z }
+local right = { x = -1.55, width = 0.9, lip_y = 7.0, lip_z = fall.lip_z + 0.15 }
+boulder(3, -2.25, 7.05, fall.lip_z - 0.1, 0.62, 10)
+boulder(1, -2.0, 2.2, -7.9, 1.05, 170)
 local side = { x = 1.3, width = 0.42, lip_y = 6.4 }
 side.lip_z = terrain.face(side.x, side.lip_y) + 0.25
-local whites = { { 0.46, 0.53, 0.56 }, { 0.66, 0.71, 0.73 }, { 0.84, 0.86, 0.86 } }
+local whites = { { 0.20, 0.25, 0.28 }, { 0.31, 0.35, 0.37 }, { 0.43, 0.45, 0.46 } }
 -- Whole and dark where it bends over the edge, whiter as it breaks up.
 local sheets = {
   glass = gr.material { diffuse = { 0.06, 0.095, 0.09 }, specular = { 0.5, 0.5, 0.5 }, shininess = 60, reflection = 0.25, glossy = 0.1 },
-  clear = gr.material { diffuse = { 0.17, 0.23, 0.24 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 },
-  torn = gr.material { diffuse = { 0.34, 0.40, 0.42 }, specular = { 0.2, 0.2, 0.2 }, shininess = 20 },
+  clear = gr.material { diffuse = { 0.085, 0.125, 0.135 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 },
+  torn = gr.material { diffuse = { 0.16, 0.20, 0.22 }, specular = { 0.2, 0.2, 0.2 }, shininess = 20 },
 }
-for _, falls in ipairs { { fall, level.strands, 0.036 }, { side, 110, 0.016 } } do
+for _, falls in ipairs { { left, level.strands, 0.034 }, { right, level.strands // 3, 0.028 }, { side, 110, 0.016 } } do
   local f = falls[1]
   water.sheet(f, 70, 70, time, 0.9):split('sheet', sheets, function(_, _, _, x, y)
     local broken = (f.lip_y - y) / f.lip_y + 0.22 * gr.noise(4.5 * x, 0.5 * y, 0.5) + 0.10 * gr.noise(13 * x, 1.1 * y, 3.5)
@@ -126,7 +131,7 @@ for _, falls in ipairs { { fall, level.strands, 0.036 }, { side, 110, 0.016 } } 
     }))
   end
 end
-local white = gr.material { diffuse = { 0.80, 0.84, 0.85 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 }
+local white = gr.material { diffuse = { 0.46, 0.49, 0.50 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 }
 local drop = gr.sphere('drop')
 drop:set_material(white)
 local function bubble(x, y, z, radius) place(scene, drop, x, y, z, radius) end
@@ -137,7 +142,7 @@ water.foam(level.foam, time, bubble)
 -- A ray may be in four mists at a time: these three, and the water's.
 local function cloud(x, y, z, sx, sy, sz, density, colour)
   local ball = gr.sphere('mist')
-  ball:set_material(gr.material { diffuse = colour or { 0.40, 0.42, 0.43 }, density = density })
+  ball:set_material(gr.material { diffuse = colour or { 0.27, 0.29, 0.305 }, density = density })
   ball:scale(sx, sy, sz)
   ball:translate(x, y, z)
   scene:add_child(ball)
@@ -146,7 +151,7 @@ cloud(fall.x, 0.1, fall.foot_z + 0.2, 2.7, 1.1, 1.1, 0.50)
 cloud(fall.x + 0.3, 0.5, fall.foot_z + 0.6, 3.6, 2.3, 1.9, 0.15)
 cloud(fall.x + 1.0, 0.8, fall.foot_z + 1.2, 6.5, 3.6, 3.2, 0.05)
 local haze = gr.cube('haze')
-haze:set_material(gr.material { diffuse = { 0.25, 0.26, 0.28 }, density = 0.0045 })
+haze:set_material(gr.material { diffuse = { 0.20, 0.215, 0.24 }, density = 0.0045 })
 haze:translate(-0.5, 0, -1)
 haze:scale(420, 40, 230)
 haze:translate(0, 0.3, -13)
@@ -194,7 +199,7 @@ local function forest(count, x0, x1, z0, z1, spacing, chance, share_of_spruces, 
   end
 end
 -- One near the viewer, whose boughs frame the picture.
-place(scene, grown({ { height = 8.0, crown = 3.4, radius = 0.26, per_twig = 30, leaf = 0.15 } }, tree.broadleaf, { { 0.095, 0.140, 0.022 } })[1],
+place(scene, grown({ { height = 6.4, crown = 3.4, radius = 0.24, per_twig = 30, leaf = 0.15 } }, tree.broadleaf, { { 0.095, 0.140, 0.022 } })[1],
   -3.3, height_at(-3.3, 10.4), 10.4, 1, 200)
 -- On the plateau, open along the river.
 forest(190, -40, 44, -42, 4, 1.6, function(x, z)
@@ -207,6 +212,14 @@ forest(420, -150, 150, -190, -40, 3.2, function(x, z) return 0.9 end, 0.75, 0.7,
 -- At both sides of the pool.
 forest(26, -24, -9, -8, 12, 2.0, function(x, z) return valley.inside_pool(x, z) < -2 and valley.cliff_z(x) < z - 1.5 and 0.9 or 0 end, 0.3, 0.6, 1.0)
 forest(26, 9, 27, -8, 8, 2.0, function(x, z) return valley.inside_pool(x, z) < -1.6 and valley.cliff_z(x) < z - 1.5 and 0.9 or 0 end, 0.4, 0.6, 1.0)
+
+-- Bushes along the foot of the cliff.
+for _, p in ipairs(scatter.points { count = 70, tries = 12, x0 = -18, x1 = 21, z0 = -9, z1 = 3, spacing = 0.9, chance = function(x, z)
+  local s = z - valley.cliff_z(x)
+  return s > 1.6 and s < 5 and valley.inside_pool(x, z) < -0.4 and 0.8 or 0
+end }) do
+  place(scene, broadleaves[math.random(#broadleaves)], p[1], height_at(p[1], p[2]) - 0.3, p[2], between(0.15, 0.42), between(0, 360))
+end
 
 -- Ferns and grass, the nearer the denser.
 local ferns = {}
@@ -223,17 +236,48 @@ end
 local tufts = {}
 local grass_tints = { { 0.090, 0.140, 0.022 }, { 0.130, 0.165, 0.030 }, { 0.065, 0.120, 0.025 }, { 0.175, 0.165, 0.050 }, { 0.105, 0.150, 0.018 } }
 for k = 1, 10 do
-  tufts[k] = tree.tuft(26, k <= 7 and 0.34 or 0.55, 0.16, 0.016):node('tuft', leafy(grass_tints[1 + k % #grass_tints]))
+  tufts[k] = tree.tuft(30, k <= 7 and 0.34 or 0.55, 0.16, 0.019):node('tuft', leafy(grass_tints[1 + k % #grass_tints]))
 end
 for _, p in ipairs(scatter.points { count = level.grass, tries = 8, x0 = -15, x1 = 17, z0 = -7, z1 = 14.5, chance = function(x, z)
   local w = valley.inside_pool(x, z)
-  if w > -0.12 or valley.cliff_z(x) > z - 0.8 then return 0 end
+  if w > -0.12 or (x + 0.35) ^ 2 + (z - 9.4) ^ 2 < 0.2 or valley.cliff_z(x) > z - 0.8 then return 0 end
   return (0.25 + 0.75 * step(4, 11, z)) * (0.35 + 0.65 * step(-0.4, 0.3, gr.noise(0.6 * x, 0.6 * z, 9.5)))
 end }) do
   local x, z = p[1], p[2]
   local meadow = gr.noise(0.35 * x, 0.35 * z, 2.5)
   local k = 1 + math.floor(shape.clamp((meadow + 0.6 + between(-0.3, 0.3)) * 7, 0, 9.99))
   place(scene, tufts[k], x, height_at(x, z), z, between(0.6, 1.2) * (1 + 0.4 * meadow), between(0, 360))
+end
+
+-- Daisies and buttercups in the grass.
+local flowers = {}
+for k, petals in ipairs { { 0.80, 0.80, 0.76 }, { 0.85, 0.62, 0.05 }, { 0.45, 0.25, 0.65 } } do
+  local flower, petal = gr.node('flower'), gr.material { diffuse = petals }
+  for i = 0, 6 do
+    local leaf = gr.sphere('petal')
+    leaf:set_material(petal)
+    leaf:scale(0.016, 0.003, 0.008)
+    leaf:translate(0.017, 0, 0)
+    leaf:rotate('z', 15)
+    leaf:rotate('y', 360 * i / 7)
+    flower:add_child(leaf)
+  end
+  local middle = gr.nh_sphere('middle', { 0, 0.003, 0 }, 0.008)
+  middle:set_material(gr.material { diffuse = { 0.75, 0.45, 0.03 } })
+  flower:add_child(middle)
+  local stalk = gr.cylinder('stalk')
+  stalk:set_material(leafy(grass_tints[1]))
+  stalk:scale(0.0025, 0.15, 0.0025)
+  stalk:translate(0, -0.15, 0)
+  flower:add_child(stalk)
+  flowers[k] = flower
+end
+for _, p in ipairs(scatter.points { count = 420, tries = 10, x0 = -6, x1 = 9, z0 = 7, z1 = 13.5, chance = function(x, z)
+  return valley.inside_pool(x, z) < -0.25 and step(0.0, 0.45, gr.noise(0.9 * x, 0.9 * z, 3.5)) or 0
+end }) do
+  local x, z = p[1], p[2]
+  local k = 1 + math.floor(shape.clamp(1.5 + 2.2 * gr.noise(0.5 * x, 0.5 * z, 1.5) + between(-0.3, 0.3), 0, 2.99))
+  place(scene, flowers[k], x, height_at(x, z) + between(0.16, 0.30), z, between(0.8, 1.5), between(0, 360), between(0, 25), between(-15, 15))
 end
 
 -- On the cliff's ledges and along its edge: grass, ferns and small bushes.
@@ -261,10 +305,10 @@ local stripes = gr.material { texture = 'assets/stripes.png', specular = { 0.35,
 --- Floats `node` at (x, z): sunk by `draught`, and tilted as the waves are.
 local function float(node, x, z, scale, turn, draught)
   local sx, sz = water.slope(x, z, time)
-  place(scene, node, x, water.wave(x, z, time) - draught, z, scale, turn, math.deg(math.atan(sz)) + 3, -math.deg(math.atan(sx)) - 2)
+  place(scene, node, x, water.wave(x, z, time) - draught, z, scale, turn, math.deg(math.atan(sz)) + 4, -math.deg(math.atan(sx)) - 2)
 end
 float(props.ring(stripes, bone), 2.9, 3.4, 0.85, 30, -0.08)
-float(props.donut(), 0.55, 5.6, 0.80, 75, -0.07)
+float(props.donut(), 0.55, 5.6, 0.80, 75, -0.11)
 float(props.ring(gr.material { diffuse = { 0.80, 0.50, 0.05 }, specular = { 0.35, 0.35, 0.35 }, shininess = 50 }, bone), 4.6, -1.0, 0.85, 200, -0.08)
 
 local tones = {}
@@ -278,20 +322,20 @@ place(scene, props.jetty(20, tones, post, iron, flame), -4.9, 0.52, 8.2, 1, -38)
 
 local bunny = gr.mesh('bunny', 'assets/bunny.obj')
 bunny:set_material(gr.material { diffuse = { 0.21, 0.14, 0.085 }, noise = 0.5 })
-place(scene, bunny, -1.2, height_at(-1.2, 10.4) - 0.02, 10.4, 0.42, 35)
+place(scene, bunny, -0.35, height_at(-0.35, 9.3) - 0.02, 9.3, 0.5, 35)
 
 --------------------------------------------------------------------------------------------------------------- picture
 
 gr.background { image = 'assets/afternoon.png' }
 -- Far away: 2.3 degrees wide, a sun in thin haze. The sky is a ball so large and near that it fills most of the sky.
-local sun = gr.sphere_light { position = { -640, 520, 540 }, radius = 20, colour = { 2.3, 1.80, 1.20 } }
+local sun = gr.sphere_light { position = { -640, 520, 540 }, radius = 20, colour = { 2.5, 1.86, 1.12 } }
 local sky = gr.sphere_light { position = { 0, 2000, 200 }, radius = 1900, colour = { 0.62, 0.76, 0.98 } }
 
 local eye, focus = { 1.3, 2.9, 16.6 }, { fall.x, 2.5, fall.foot_z }
 gr.render {
   scene = scene, output = 'waterfall.png', size = level.size, samples = level.samples, transfer = 'srgb', max_depth = 4,
   camera = {
-    eye = eye, look_at = { -0.5, 3.35, -8 }, fov = 37, lens = 0.05,
+    eye = eye, look_at = { -0.5, 3.0, -8 }, fov = 38.5, lens = 0.036,
     focus = math.sqrt((eye[1] - focus[1]) ^ 2 + (eye[2] - focus[2]) ^ 2 + (eye[3] - focus[3]) ^ 2),
   },
   lights = { sun, sky }, ambient = { 0.20, 0.22, 0.24 },

@@ -29,15 +29,15 @@ function props.donut()
   put(donut, gr.torus('dough', R, r), gr.material { diffuse = { 0.62, 0.33, 0.11 }, specular = { 0.15, 0.15, 0.15 }, shininess = 20 })
   local icing = gr.material { diffuse = { 0.80, 0.22, 0.36 }, specular = { 0.5, 0.5, 0.5 }, shininess = 60 }
   local cap = put(donut, gr.torus('icing', R, r), icing)
-  cap:scale(1.012, 0.93, 1.012)
-  cap:translate(0, 0.045, 0)
+  cap:scale(1.008, 0.90, 1.008)
+  cap:translate(0, 0.075, 0)
   for i = 1, 26 do
     local azimuth = 360 * i / 26 + between(-4, 4)
     local outside = i % 2 == 0
     local lobe = put(donut, gr.sphere('drop'), icing)
     lobe:scale(0.055, between(0.06, 0.13), 0.075)
     lobe:rotate('z', outside and 8 or -8)
-    lobe:translate(outside and R + 0.968 * r or R - 0.968 * r, between(0.02, 0.07), 0)
+    lobe:translate(outside and R + 0.968 * r or R - 0.968 * r, between(0.04, 0.09), 0)
     lobe:rotate('y', azimuth)
   end
   local colours = { { 0.95, 0.85, 0.15 }, { 0.15, 0.45, 0.85 }, { 0.95, 0.95, 0.90 }, { 0.25, 0.70, 0.25 }, { 0.95, 0.45, 0.10 } }
@@ -59,7 +59,7 @@ function props.donut()
     at:rotate('y', between(0, 360))
     at:translate(0, r + 0.030, 0)
     at:rotate('z', tilt)
-    at:translate(R, 0.012, 0)
+    at:translate(R, 0.015, 0)
     at:rotate('y', between(0, 360))
     donut:add_child(at)
   end

@@ -207,18 +207,18 @@ function tree.fern(fronds, length)
     local azimuth = 2 * pi * i / fronds + between(-0.3, 0.3)
     local c, s = cos(azimuth), sin(azimuth)
     local size, arch = length * between(0.7, 1.1), between(0.7, 1.2)
-    local n = 15
+    local n = 24
     for k = 1, n do
       local t = k / n
       local out, up = size * (0.25 * t + 0.62 * t * t), size * (0.95 * t - arch * 0.75 * t * t)
-      local leaflet = 0.34 * size * sin(pi * (0.12 + 0.86 * t)) ^ 0.8 * (1 - 0.35 * t)
+      local leaflet = 0.27 * size * sin(pi * (0.12 + 0.86 * t)) ^ 0.8 * (1 - 0.35 * t)
       for side = -1, 1, 2 do
         local open = azimuth + side * 1.15
         local fall = -0.22 - 0.3 * t
         local far = sqrt(1 + fall * fall)
         local dx, dy, dz = cos(open) / far, fall / far, sin(open) / far
         local x, y, z = c * out, up, s * out
-        local half = 0.045 * size
+        local half = 0.021 * size
         local a = mesh:vertex(x - half * c, y - half * 0.4, z - half * s, 0.3 * c, 0.9, 0.3 * s)
         local b = mesh:vertex(x + half * c, y + half * 0.4, z + half * s, 0.3 * c, 0.9, 0.3 * s)
         mesh:triangle(a, b, mesh:vertex(x + leaflet * dx, y + leaflet * dy, z + leaflet * dz, 0.5 * cos(open), 0.8, 0.5 * sin(open)))

@@ -157,7 +157,7 @@ function water.foam(count, time, put)
     local u, out = between(-1.15, 1.15), between(-0.25, 0.8)
     local x, z = fall.x + 0.56 * fall.width * u, fall.foot_z + out
     local boil = 0.30 * math.exp(-(out / 0.4) ^ 2) * (0.7 + 0.6 * noise(1.5 * x, 2.2 * time, 2 * z))
-    put(x, water.wave(x, z, time) + boil * math.random(), z, between(0.02, 0.075))
+    put(x, water.wave(x, z, time) + boil * math.random(), z, between(0.012, 0.045))
   end
   for _ = 1, count do
     local r, angle = 0.35 + 4.8 * between(0, 1) ^ 2.0, between(-0.35, math.pi + 0.35)
