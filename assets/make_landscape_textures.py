@@ -23,8 +23,8 @@ def rock():
     def shade(x, y):
         bent, g = warp.at(x, y), grain.at(x, y)
         tone = 0.5 + 0.36 * beds.at(x + 0.06 * bent, y + 0.08 * bent) + 0.26 * g + 0.15 * bent
-        colour = ramp([(0.0, (0.060, 0.056, 0.052)), (0.4, (0.125, 0.115, 0.102)), (0.7, (0.190, 0.172, 0.145)),
-                       (1.0, (0.27, 0.245, 0.20))], tone)
+        colour = ramp([(0.0, (0.050, 0.050, 0.050)), (0.4, (0.105, 0.103, 0.098)), (0.7, (0.165, 0.158, 0.143)),
+                       (1.0, (0.25, 0.235, 0.20))], tone)
         crack = abs(cracks.at(x + 0.05 * bent, y + 0.02 * g))
         colour = scaled(colour, 0.42 + 0.58 * step(0.0, 0.045, crack))
         colour = mix(colour, (0.042, 0.041, 0.036), 0.75 * step(0.10, 0.75, stain.at(x + 0.02 * bent, y)))

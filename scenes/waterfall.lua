@@ -25,8 +25,11 @@ local between, step, place = shape.between, shape.step, shape.place
 local fall = valley.fall
 
 local scene = gr.node('scene')
+-- Each part begins with math.randomseed, so that a change to one leaves the others as they are.
 
 -------------------------------------------------------------------------------------------------------------- ground
+
+math.randomseed(1)
 
 local rock = gr.material { texture = 'assets/rock.png', bump = 'assets/rock.png', specular = { 0.02, 0.02, 0.02 }, shininess = 10 }
 local wet_rock = gr.material { diffuse = { 0.045, 0.046, 0.042 }, specular = { 0.25, 0.25, 0.25 }, shininess = 40, bump = 'assets/rock.png' }
@@ -93,6 +96,8 @@ end
 
 --------------------------------------------------------------------------------------------------------------- water
 
+math.randomseed(2)
+
 local pool = water.pool(-13, 20, -9.2, 13.4, level.cell, time):node('pool', gr.material {
   diffuse = { 0, 0, 0 }, specular = { 0.5, 0.45, 0.35 }, shininess = 200, reflection = 1, ior = 1.33, casts_shadow = false,
 })
@@ -109,7 +114,8 @@ scene:add_child(depth)
 local left = { x = -3.75, width = 2.5, lip_y = 7.3, lip_z = fall.lip_z }
 local right = { x = -1.55, width = 0.9, lip_y = 7.0, lip_z = fall.lip_z + 0.15 }
 boulder(3, -2.25, 7.05, fall.lip_z - 0.1, 0.62, 10)
-boulder(1, -2.0, 2.2, -7.9, 1.05, 170)
+boulder(4, -2.45, 0.9, -7.1, 0.85, 170)
+boulder(2, -4.9, 0.5, -6.9, 0.9, 250)
 local side = { x = 1.3, width = 0.42, lip_y = 6.4 }
 side.lip_z = terrain.face(side.x, side.lip_y) + 0.25
 local whites = { { 0.20, 0.25, 0.28 }, { 0.31, 0.35, 0.37 }, { 0.43, 0.45, 0.46 } }
@@ -147,8 +153,8 @@ local function cloud(x, y, z, sx, sy, sz, density, colour)
   ball:translate(x, y, z)
   scene:add_child(ball)
 end
-cloud(fall.x, 0.1, fall.foot_z + 0.2, 2.7, 1.1, 1.1, 0.50)
-cloud(fall.x + 0.3, 0.5, fall.foot_z + 0.6, 3.6, 2.3, 1.9, 0.15)
+cloud(fall.x, 0.1, fall.foot_z + 0.2, 2.8, 1.2, 1.2, 0.75)
+cloud(fall.x + 0.3, 0.5, fall.foot_z + 0.6, 3.5, 2.5, 1.9, 0.20)
 cloud(fall.x + 1.0, 0.8, fall.foot_z + 1.2, 6.5, 3.6, 3.2, 0.05)
 local haze = gr.cube('haze')
 haze:set_material(gr.material { diffuse = { 0.20, 0.215, 0.24 }, density = 0.0045 })
@@ -158,6 +164,8 @@ haze:translate(0, 0.3, -13)
 scene:add_child(haze)
 
 -------------------------------------------------------------------------------------------------------------- plants
+
+math.randomseed(3)
 
 local bark = gr.material { texture = 'assets/trunk.png', bump = 'assets/trunk.png' }
 local function leafy(colour, glow)
@@ -280,12 +288,20 @@ end }) do
   place(scene, flowers[k], x, height_at(x, z) + between(0.16, 0.30), z, between(0.8, 1.5), between(0, 360), between(0, 25), between(-15, 15))
 end
 
--- On the cliff's ledges and along its edge: grass, ferns and small bushes.
+-- On the cliff's ledges and along its edge: grass, ferns, small bushes and hanging ivy.
+local ivies = {}
+for k, tint in ipairs { { 0.040, 0.085, 0.018 }, { 0.065, 0.110, 0.020 }, { 0.090, 0.105, 0.020 } } do
+  ivies[k] = tree.ivy(16, 1.5 + 0.5 * k, 0.6 + 0.2 * k):node('ivy', leafy(tint))
+end
 local p, n = cliff.positions, cliff.normals
 for i = 0, cliff.count - 1 do
   local x, y, z = p[3 * i + 1], p[3 * i + 2], p[3 * i + 3]
   local nx, ny, nz = n[3 * i + 1], n[3 * i + 2], n[3 * i + 3]
   local up = ny / math.sqrt(nx * nx + ny * ny + nz * nz)
+  local overgrown = gr.noise(0.21 * x, 0.25 * y, 3.5)
+  if y > 2.5 and up > 0.1 and overgrown > 0.12 and math.abs(x - fall.x) > 2.6 and x > -22 and x < 24 and math.random() < 0.028 / level.grid ^ 2 then
+    place(scene, ivies[math.random(3)], x, y, z, between(0.6, 1.1), between(-20, 20))
+  end
   if up > 0.45 and y > 0.4 and math.abs(x - fall.x) > 2.1 and x > -22 and x < 24 and math.random() < 0.13 / level.grid ^ 2 then
     local pick = math.random()
     if pick < 0.70 then
@@ -299,6 +315,8 @@ for i = 0, cliff.count - 1 do
 end
 
 ---------------------------------------------------------------------------------------------------------------- props
+
+math.randomseed(4)
 
 local bone = gr.material { diffuse = { 0.55, 0.50, 0.40 }, specular = { 0.2, 0.2, 0.2 }, shininess = 20 }
 local stripes = gr.material { texture = 'assets/stripes.png', specular = { 0.35, 0.35, 0.35 }, shininess = 50 }
@@ -325,6 +343,8 @@ bunny:set_material(gr.material { diffuse = { 0.21, 0.14, 0.085 }, noise = 0.5 })
 place(scene, bunny, -0.35, height_at(-0.35, 9.3) - 0.02, 9.3, 0.5, 35)
 
 --------------------------------------------------------------------------------------------------------------- picture
+
+math.randomseed(5)
 
 gr.background { image = 'assets/afternoon.png' }
 -- Far away: 2.3 degrees wide, a sun in thin haze. The sky is a ball so large and near that it fills most of the sky.

@@ -200,6 +200,25 @@ function tree.tuft(blades, height, spread, width)
   return mesh
 end
 
+--- Ivy that hangs in front of a wall which faces +z: strings of leaves, at most `drop` long, about the x axis.
+function tree.ivy(strings, drop, spread)
+  local mesh = Mesh.new()
+  for _ = 1, strings do
+    local x, z = between(-spread, spread), between(-0.1, 0.25)
+    local length = drop * between(0.25, 1) * (1 - 0.5 * math.abs(x) / spread)
+    local y = between(0, 0.25)
+    local sway = between(0, 50)
+    while y > -length do
+      local dx, dz = between(-0.8, 0.8), between(0.1, 0.8)
+      local size = sqrt(dx * dx + dz * dz + 0.5)
+      tree.leaf(mesh, x + 0.25 * gr.noise(sway, y, 0.5) + between(-0.05, 0.05), y, z + 0.15 * gr.noise(sway, y, 7.5),
+        dx / size, -0.707 / size, dz / size, between(0.07, 0.13), 0.42, 0.2 * dx, 0.55, 0.8)
+      y = y - between(0.02, 0.05)
+    end
+  end
+  return mesh
+end
+
 --- A fern: fronds that arch outwards, each with two rows of leaflets.
 function tree.fern(fronds, length)
   local mesh = Mesh.new()
