@@ -4,10 +4,10 @@
 -- rocks; three swimming rings, one of them a doughnut; the lens, which is focused on the fall.
 -- 1280x720, 64 camera samples a pixel: see `quality`. FRAME n is n / 25 seconds later.
 
-local quality = 'preview' -- or 'preview': fewer plants, 640x360, four samples, under a minute on two CPU cores
+local quality = 'full' -- or 'preview': fewer plants, 640x360, four samples, under a minute on two CPU cores
 
 local levels = {
-  full = { size = { 1280, 720 }, samples = 64, grid = 1, grass = 15000, trees = 1, strands = 2600, foam = 2600, drops = 700, cell = 0.085 },
+  full = { size = { 1280, 720 }, samples = 64, grid = 0.8, grass = 12000, trees = 1, strands = 2200, foam = 2000, drops = 700, cell = 0.11 },
   preview = { size = { 640, 360 }, samples = 4, grid = 0.6, grass = 6000, trees = 0.6, strands = 1600, foam = 1000, drops = 300, cell = 0.14 },
 }
 local level = levels[quality]
@@ -98,7 +98,9 @@ end
 
 math.randomseed(2)
 
-local pool = water.pool(-13, 20, -9.2, 13.4, level.cell, time):node('pool', gr.material {
+local pool = water.pool(-13, 20, -9.2, 13.4, level.cell, time, function(x, z)
+  return height_at(x, z) < 0.3
+end):node('pool', gr.material {
   diffuse = { 0, 0, 0 }, specular = { 0.5, 0.45, 0.35 }, shininess = 200, reflection = 1, ior = 1.33, casts_shadow = false,
 })
 scene:add_child(pool)
@@ -200,6 +202,7 @@ local broadleaves = grown({
 }, tree.broadleaf, { { 0.085, 0.130, 0.022 }, { 0.130, 0.150, 0.025 }, { 0.200, 0.150, 0.025 }, { 0.055, 0.105, 0.030 } })
 
 local function forest(count, x0, x1, z0, z1, spacing, chance, share_of_spruces, low, high)
+  math.randomseed(count)
   for _, p in ipairs(scatter.points { count = math.floor(count * level.trees), tries = 8, x0 = x0, x1 = x1, z0 = z0, z1 = z1, spacing = spacing, chance = chance }) do
     local x, z = p[1], p[2]
     local kinds = math.random() < share_of_spruces and spruces or broadleaves
@@ -210,15 +213,15 @@ end
 place(scene, grown({ { height = 6.4, crown = 3.4, radius = 0.24, per_twig = 30, leaf = 0.15 } }, tree.broadleaf, { { 0.095, 0.140, 0.022 } })[1],
   -3.3, height_at(-3.3, 10.4), 10.4, 1, 200)
 -- On the plateau, open along the river.
-forest(190, -40, 44, -42, 4, 1.6, function(x, z)
+forest(150, -40, 44, -42, 4, 1.6, function(x, z)
   local s = valley.cliff_z(x) - z
   if s < 2.2 then return 0 end
-  return 0.9 * step(2.5, 7.0, math.abs(x - fall.x - 1.5 * step(5, 30, s)))
-end, 0.6, 0.4, 0.95)
+  return 0.9 * step(3.0, 12.0, math.abs(x - fall.x - 1.5 * step(5, 30, s)))
+end, 0.6, 0.35, 0.85)
 -- On the hills.
 forest(420, -150, 150, -190, -40, 3.2, function(x, z) return 0.9 end, 0.75, 0.7, 1.3)
 -- At both sides of the pool.
-forest(26, -24, -9, -8, 12, 2.0, function(x, z) return valley.inside_pool(x, z) < -2 and valley.cliff_z(x) < z - 1.5 and 0.9 or 0 end, 0.3, 0.6, 1.0)
+forest(20, -24, -10, -8, 12, 2.0, function(x, z) return valley.inside_pool(x, z) < -2 and valley.cliff_z(x) < z - 1.5 and 0.9 or 0 end, 0.3, 0.6, 1.0)
 forest(26, 9, 27, -8, 8, 2.0, function(x, z) return valley.inside_pool(x, z) < -1.6 and valley.cliff_z(x) < z - 1.5 and 0.9 or 0 end, 0.4, 0.6, 1.0)
 
 -- Bushes along the foot of the cliff.
@@ -247,9 +250,9 @@ for k = 1, 10 do
   tufts[k] = tree.tuft(30, k <= 7 and 0.34 or 0.55, 0.16, 0.019):node('tuft', leafy(grass_tints[1 + k % #grass_tints]))
 end
 for _, p in ipairs(scatter.points { count = level.grass, tries = 8, x0 = -15, x1 = 17, z0 = -7, z1 = 14.5, chance = function(x, z)
-  local w = valley.inside_pool(x, z)
-  if w > -0.12 or (x + 0.35) ^ 2 + (z - 9.4) ^ 2 < 0.2 or valley.cliff_z(x) > z - 0.8 then return 0 end
-  return (0.25 + 0.75 * step(4, 11, z)) * (0.35 + 0.65 * step(-0.4, 0.3, gr.noise(0.6 * x, 0.6 * z, 9.5)))
+  if math.random() > 0.25 + 0.75 * step(4, 11, z) or height_at(x, z) < 0.1 or valley.cliff_z(x) > z - 0.8 then return 0 end
+  if (x + 0.35) ^ 2 + (z - 9.4) ^ 2 < 0.2 then return 0 end
+  return 0.35 + 0.65 * step(-0.4, 0.3, gr.noise(0.6 * x, 0.6 * z, 9.5))
 end }) do
   local x, z = p[1], p[2]
   local meadow = gr.noise(0.35 * x, 0.35 * z, 2.5)
@@ -348,7 +351,7 @@ math.randomseed(5)
 
 gr.background { image = 'assets/afternoon.png' }
 -- Far away: 2.3 degrees wide, a sun in thin haze. The sky is a ball so large and near that it fills most of the sky.
-local sun = gr.sphere_light { position = { -640, 520, 540 }, radius = 20, colour = { 2.5, 1.86, 1.12 } }
+local sun = gr.sphere_light { position = { -430, 500, 700 }, radius = 20, colour = { 2.5, 1.86, 1.12 } }
 local sky = gr.sphere_light { position = { 0, 2000, 200 }, radius = 1900, colour = { 0.62, 0.76, 0.98 } }
 
 local eye, focus = { 1.3, 2.9, 16.6 }, { fall.x, 2.5, fall.foot_z }

@@ -26,8 +26,8 @@ function water.slope(x, z, time)
     (water.wave(x, z + e, time) - water.wave(x, z - e, time)) / (2 * e)
 end
 
---- The pool's surface over the box, without what would lie deep under the banks.
-function water.pool(x0, x1, z0, z1, cell, time)
+--- The pool's surface over the box, where `wet(x, z)`.
+function water.pool(x0, x1, z0, z1, cell, time, wet)
   local mesh = Mesh.new()
   local columns, rows = math.ceil((x1 - x0) / cell), math.ceil((z1 - z0) / cell)
   local row_above
@@ -36,7 +36,7 @@ function water.pool(x0, x1, z0, z1, cell, time)
     local row = {}
     for i = 0, columns do
       local x = mix(x0, x1, i / columns)
-      if valley.inside_pool(x, z) > -0.9 then
+      if wet(x, z) then
         row[i] = mesh:vertex(x, water.wave(x, z, time), z, 0, 1, 0, x, z)
       end
     end
@@ -51,16 +51,18 @@ function water.pool(x0, x1, z0, z1, cell, time)
   return mesh:smooth()
 end
 
---- Where water of the strand `u` (-1 to 1 across the lip) is `t` seconds after it left the edge; before that it comes
---- over the plateau. The edge is uneven: some strands leave further out and lower than others.
-local function course(fall, u, t)
+--- Where water of the strand `u` (-1 to 1 across the edge) is, as a function of the seconds since it left the edge; before
+--- that it comes over the plateau. The edge is uneven: some strands leave faster and lower than others.
+local function course(fall, u)
   local speed = 1.15 + 0.35 * noise(2.6 * u, 3.3, 0.5)
   local edge_y = fall.lip_y - 0.22 * math.abs(u) ^ 3 + 0.25 * noise(1.9 * u, 0.3, 8.8)
   local x = fall.x + 0.5 * fall.width * u
-  if t < 0 then return x, edge_y + 0.02 * -t, fall.lip_z + 2.0 * t end
-  local y = edge_y - 4.9 * t * t
-  local dropped = t * t * 4.9 / fall.lip_y
-  return x + 0.34 * u * dropped + 0.16 * noise(5 * u, 1.1 * y, 2.2) * dropped, y, fall.lip_z + speed * t
+  return function(t)
+    if t < 0 then return x, edge_y - 0.02 * t, fall.lip_z + 2.0 * t end
+    local drop = 4.9 * t * t
+    local share = drop / fall.lip_y
+    return x + (0.34 * u + 0.16 * noise(5 * u, 1.1 * drop, 2.2)) * share, edge_y - drop, fall.lip_z + speed * t
+  end
 end
 
 --- Seconds from the edge to the pool.
@@ -71,20 +73,21 @@ end
 --- The body of the fall: a sheet over its width with folds that run down.
 function water.sheet(fall, columns, rows, time, inset)
   local mesh = Mesh.new()
-  for j = 0, rows do
-    local q = j / rows
-    local t = mix(-0.5, fall_time(fall) + 0.02, q ^ 0.8)
-    for i = 0, columns do
-      local u = mix(-1, 1, i / columns) * inset
-      local x, y, z = course(fall, u, t)
+  for i = 0, columns do
+    local u = mix(-1, 1, i / columns) * inset
+    local at = course(fall, u)
+    for j = 0, rows do
+      local q = j / rows
+      local t = mix(-0.5, fall_time(fall) + 0.02, q ^ 0.8)
+      local x, y, z = at(t)
       local fold = 0.13 * noise(5.5 * u, 0.5 * y + 1.5 * time, 0.5) + 0.06 * noise(15 * u, 0.8 * y + 2.6 * time, 1.5)
-      mesh:vertex(x, y + (t < 0 and 0.06 or 0) * 0, z - 0.10 + fold * step(-0.3, 0.3, t), 0, 0, 1, u, -y / 2)
+      mesh:vertex(x, y, z - 0.10 + fold * step(-0.3, 0.3, t), 0, 0, 1, u, -y / 2)
     end
   end
-  for j = 0, rows - 1 do
-    for i = 0, columns - 1 do
-      local a = j * (columns + 1) + i
-      mesh:quad(a, a + columns + 1, a + columns + 2, a + 1)
+  for i = 0, columns - 1 do
+    for j = 0, rows - 1 do
+      local a = i * (rows + 1) + j
+      mesh:quad(a, a + 1, a + rows + 2, a + rows + 1)
     end
   end
   return mesh:smooth()
@@ -106,18 +109,20 @@ function water.strands(fall, count, kinds, thickness, time)
     local thick = thickness * between(0.25, 1) ^ 1.5
     local forward = between(-0.04, 0.24)
     local wobble = between(0, 100)
-    local pieces = 26
+    local whole_until = 0.25 * noise(wobble, 2.5, 0.5)
+    local at = course(fall, u)
+    local pieces = 18
     local previous
     for k = 0, pieces do
       local t = from + length * k / pieces
       if t > -0.12 and t < total + 0.03 then
-        local x, y, z = course(fall, u, t)
+        local x, y, z = at(t)
         local q = math.max(0, t / total)
         local ends = math.max(0, math.sin(math.pi * k / pieces)) ^ 0.6
-        local whole = 0.25 + 0.75 * step(0.02, 0.30, q + 0.25 * noise(wobble, 2.5, 0.5))
+        local whole = 0.25 + 0.75 * step(0.02, 0.30, q + whole_until)
         local half = thick * ends * whole * (1 + 0.6 * noise(wobble, 1.7 * y, 4.5)) * (1 - 0.3 * q)
-        x = x + (0.02 + 0.20 * q) * noise(wobble, 0.9 * y, 1.5) + (0.01 + 0.03 * q) * noise(wobble, 4 * y, 6.5)
-        z = z + forward * (0.10 + q) + 0.05 * q * noise(wobble, 2 * y, 9.5)
+        x = x + (0.02 + 0.22 * q) * noise(wobble, 1.1 * y, 1.5)
+        z = z + forward * (0.10 + q)
         -- A little round across, and turned up where it goes over the edge.
         local over = t < 0.15 and 1 or 0.4
         local a = mesh:vertex(x - half, y, z, -0.35, over, 0.9)
@@ -144,7 +149,7 @@ function water.drops(count, time, put)
   -- And torn off the sheet on its way down.
   for _ = 1, count do
     local u, t = between(-1.12, 1.12), (between(0.35, 1) * fall_time(fall) + time) % fall_time(fall)
-    local x, y, z = course(fall, u, t)
+    local x, y, z = course(fall, u)(t)
     local q = t / fall_time(fall)
     local radius, aside, forward = between(0.005, 0.018), between(-0.35, 0.35), between(-0.1, 0.5)
     if q > 0.3 then put(x + aside * q, y, z + forward * q, radius) end
