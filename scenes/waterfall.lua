@@ -7,7 +7,7 @@
 local quality = 'full' -- or 'preview': fewer plants, 640x360, four samples, under a minute on two CPU cores
 
 local levels = {
-  full = { size = { 1280, 720 }, samples = 64, grid = 0.8, grass = 12000, trees = 1, strands = 2200, foam = 2000, drops = 700, cell = 0.11 },
+  full = { size = { 1280, 720 }, samples = 64, grid = 0.8, grass = 12000, trees = 1, strands = 1800, foam = 2000, drops = 700, cell = 0.11 },
   preview = { size = { 640, 360 }, samples = 4, grid = 0.6, grass = 6000, trees = 0.6, strands = 1600, foam = 1000, drops = 300, cell = 0.14 },
 }
 local level = levels[quality]
@@ -120,12 +120,12 @@ boulder(4, -2.45, 0.9, -7.1, 0.85, 170)
 boulder(2, -4.9, 0.5, -6.9, 0.9, 250)
 local side = { x = 1.3, width = 0.42, lip_y = 6.4 }
 side.lip_z = terrain.face(side.x, side.lip_y) + 0.25
-local whites = { { 0.20, 0.25, 0.28 }, { 0.31, 0.35, 0.37 }, { 0.43, 0.45, 0.46 } }
+local whites = { { 0.13, 0.17, 0.19 }, { 0.24, 0.28, 0.30 }, { 0.38, 0.40, 0.41 } }
 -- Whole and dark where it bends over the edge, whiter as it breaks up.
 local sheets = {
   glass = gr.material { diffuse = { 0.06, 0.095, 0.09 }, specular = { 0.5, 0.5, 0.5 }, shininess = 60, reflection = 0.25, glossy = 0.1 },
-  clear = gr.material { diffuse = { 0.085, 0.125, 0.135 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 },
-  torn = gr.material { diffuse = { 0.16, 0.20, 0.22 }, specular = { 0.2, 0.2, 0.2 }, shininess = 20 },
+  clear = gr.material { diffuse = { 0.055, 0.085, 0.095 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 },
+  torn = gr.material { diffuse = { 0.12, 0.155, 0.17 }, specular = { 0.2, 0.2, 0.2 }, shininess = 20 },
 }
 for _, falls in ipairs { { left, level.strands, 0.034 }, { right, level.strands // 3, 0.028 }, { side, 110, 0.016 } } do
   local f = falls[1]
@@ -139,7 +139,7 @@ for _, falls in ipairs { { left, level.strands, 0.034 }, { right, level.strands 
     }))
   end
 end
-local white = gr.material { diffuse = { 0.46, 0.49, 0.50 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 }
+local white = gr.material { diffuse = { 0.40, 0.43, 0.44 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 }
 local drop = gr.sphere('drop')
 drop:set_material(white)
 local function bubble(x, y, z, radius) place(scene, drop, x, y, z, radius) end
@@ -150,14 +150,14 @@ water.foam(level.foam, time, bubble)
 -- A ray may be in four mists at a time: these three, and the water's.
 local function cloud(x, y, z, sx, sy, sz, density, colour)
   local ball = gr.sphere('mist')
-  ball:set_material(gr.material { diffuse = colour or { 0.27, 0.29, 0.305 }, density = density })
+  ball:set_material(gr.material { diffuse = colour or { 0.225, 0.24, 0.25 }, density = density })
   ball:scale(sx, sy, sz)
   ball:translate(x, y, z)
   scene:add_child(ball)
 end
 cloud(fall.x, 0.1, fall.foot_z + 0.2, 2.8, 1.2, 1.2, 0.75)
 cloud(fall.x + 0.3, 0.5, fall.foot_z + 0.6, 3.5, 2.5, 1.9, 0.20)
-cloud(fall.x + 1.0, 0.8, fall.foot_z + 1.2, 6.5, 3.6, 3.2, 0.05)
+cloud(fall.x + 1.0, 0.8, fall.foot_z + 1.2, 6.5, 3.6, 3.2, 0.035)
 local haze = gr.cube('haze')
 haze:set_material(gr.material { diffuse = { 0.20, 0.215, 0.24 }, density = 0.0045 })
 haze:translate(-0.5, 0, -1)

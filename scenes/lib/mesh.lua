@@ -1,13 +1,6 @@
 --- Triangle meshes that grow vertex by vertex.
 
 local Mesh = {}
-local table_mesh = function(o)
-  local v, f = {}, {}
-  local p = o.positions
-  for i = 1, #p, 3 do v[#v+1] = {p[i], p[i+1], p[i+2]} end
-  for i = 1, #o.faces, 3 do f[#f+1] = {o.faces[i], o.faces[i+1], o.faces[i+2]} end
-  return gr.mesh(o.name, v, f)
-end
 Mesh.__index = Mesh
 
 function Mesh.new()
@@ -56,7 +49,7 @@ end
 
 --- A node with this mesh, of one material.
 function Mesh:node(name, material)
-  local node = table_mesh { name = name, positions = self.positions, normals = self.normals, uvs = self.uvs, faces = self.faces }
+  local node = gr.mesh { name = name, positions = self.positions, normals = self.normals, uvs = self.uvs, faces = self.faces }
   node:set_material(material)
   return node
 end
@@ -81,7 +74,7 @@ function Mesh:split(name, materials, choose, parent)
   end
   for key, material in pairs(materials) do
     if #parts[key] > 0 then
-      local node = table_mesh {
+      local node = gr.mesh {
         name = name .. '-' .. key, positions = self.positions, normals = self.normals, uvs = self.uvs, faces = parts[key],
       }
       node:set_material(material)
