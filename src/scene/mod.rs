@@ -12,6 +12,7 @@ mod material;
 mod mesh;
 mod obj;
 mod polygons;
+mod smooth;
 
 pub use camera::Camera;
 pub use geometry::{Geometry, Shape};

@@ -1,5 +1,5 @@
 use super::Mesh;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// A mesh in the making: vertices and convex planar polygons, each split into a fan of triangles.
 #[derive(Debug, Default)]
@@ -15,6 +15,11 @@ impl PolygonMesh {
     /// Vertices are numbered from 0 in the order in which they are added. Coordinates must be finite in `f32`.
     pub fn add_vertex(&mut self, position: DVec3) {
         self.mesh.positions.push(position.as_vec3());
+    }
+
+    /// Sets the positions, normals and texture coordinates of all vertices at once, in the terms of [`Mesh`].
+    pub fn set_vertices(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>, uvs: Vec<Vec2>) {
+        self.mesh = Mesh { positions, normals, uvs, ..std::mem::take(&mut self.mesh) };
     }
 
     /// Adds a polygon with these vertices, counter-clockwise seen from outside. Triangles without area are left out.

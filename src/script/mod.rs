@@ -16,6 +16,7 @@ mod guard;
 mod modules;
 mod sandbox;
 mod search;
+mod sequences;
 mod state;
 
 pub use conventions::{ConventionOverrides, TransformOrder, ViewConvention};

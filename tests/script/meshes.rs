@@ -192,3 +192,95 @@ fn readobj_is_there_and_the_scenes_own_comes_first() {
     sandbox.write("readobj.lua", "function readobj() error('my own') end");
     assert_eq!(sandbox.failure("require 'readobj'\nreadobj('t.obj')").0, "readobj.lua:1: my own");
 }
+
+#[test]
+fn meshes_by_keys_are_nested_or_flat() {
+    let nested = table_mesh(
+        "root = gr.mesh{name='m', positions={{0,0,0}, {1,0,0}, {1,1,0}, {0,1,0}}, faces={{0,1,2,3}},
+         normals={{0,0,3}, {0,0,1}, {0,0,0}, {0,2,0}}, uvs={{0,0}, {1,0}, {1,1}, {0,0.25}}}",
+    );
+    let flat = table_mesh(
+        "root = gr.mesh{name='m', positions={0,0,0, 1,0,0, 1,1,0, '0',1,0}, faces={0,1,2, 0,2,'3'},
+         normals={0,0,3, 0,0,1, 0,0,0, 0,2,0}, uvs={0,0, 1,0, 1,1, 0,0.25}}",
+    );
+    assert_eq!(nested, flat);
+    assert_eq!(flat.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(flat.positions[3], Vec3::Y);
+    assert_eq!(flat.normals, [Vec3::Z, Vec3::Z, Vec3::ZERO, Vec3::Y]);
+    // A mesh holds v as OBJ files do.
+    assert_eq!(flat.uvs, [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0), Vec2::new(0.0, 0.75)]);
+    let sandbox = Sandbox::new();
+    sandbox.write("t.obj", format!("{SQUARE}f 1 2 3\n"));
+    let scenes = sandbox.load(&format!("root = gr.mesh{{name='t', file='t.obj'}} {RENDER}")).unwrap();
+    let root = &scenes[0].graph.nodes[0];
+    assert_eq!(root.name, "t");
+    assert!(matches!(&root.geometry.as_ref().unwrap().shape, Shape::Mesh(mesh) if mesh.triangles.len() == 1));
+}
+
+#[test]
+fn smooth_normals_are_weighted_by_angle() {
+    // A corner of a cube, one face of which is cut in two at the corner: by area or by number it would weigh double.
+    let mesh = table_mesh(
+        "root = gr.mesh{smooth=true, positions={0,0,0, 1,0,0, 1,1,0, 0,1,0, 0,0,-1, 9,9,9},
+         faces={0,1,2, 0,2,3, 0,4,1, 0,3,4}}",
+    );
+    let corner = Vec3::new(-1.0, -1.0, 1.0).normalize();
+    assert!((mesh.normals[0] - corner).length() < 1e-6, "{:?}", mesh.normals);
+    assert_eq!(mesh.normals[2], Vec3::Z);
+    assert_eq!(mesh.normals[5], Vec3::ZERO);
+}
+
+#[test]
+fn bad_meshes_by_keys_name_the_key_and_the_place() {
+    let mesh = |extra: &str| format!("positions={{0,0,0, 1,0,0, 0,1,0}}, faces={{0,1,2}}{extra}");
+    for (keys, expected) in [
+        (mesh(", normal={}"), "unknown key 'normal'; did you mean 'normals'?"),
+        (mesh(", file='a.obj'"), "cannot stand together with 'file'"),
+        (mesh(", smooth=true, normals={0,0,1, 0,0,1, 0,0,1}"), "key 'smooth': cannot stand together with 'normals'"),
+        (mesh(", smooth=1"), "key 'smooth': expected true or false, got 1"),
+        (mesh(", normals={0,0,1}"), "key 'normals': expected one for each of the 3 vertices, got 1"),
+        (mesh(", normals={{0,0,1}, {0,1}}"), "key 'normals': normal [2]: expected a table of 3 numbers, got 2 values"),
+        (mesh(", uvs={0,0, 1,0, 0}"), "key 'uvs': expected 2 numbers for each uv, got 5 in all"),
+        (mesh(", uvs={0,0, 1,'x'}"), "key 'uvs': expected a number at [4], got the text 'x'"),
+        (
+            "faces={0,1,2}".to_owned(),
+            "key 'positions': expected a table of tables of 3 numbers, or of numbers, 3 for each vertex, got nil",
+        ),
+        ("positions={0,0,0, 1,nil,0}, faces={}".to_owned(), "key 'positions': expected a number at [5], got nil"),
+        (
+            "positions={0,0,0, 1,0}, faces={}".to_owned(),
+            "key 'positions': expected 3 numbers for each vertex, got 5 in all",
+        ),
+        (
+            "positions={{0,0,0}}".to_owned(),
+            "key 'faces': expected a table of faces, each a table of vertex numbers counted from 0, or of such \
+             numbers, 3 a triangle, got nil",
+        ),
+        (
+            "positions={{0,0,0}}, faces={0,0,0, 0,0,1}".to_owned(),
+            "key 'faces': triangle at [4] to [6]: there is no vertex 1; the 1 vertices are counted from 0",
+        ),
+        (
+            "positions={{0,0,0}}, faces={0,0.5,0}".to_owned(),
+            "key 'faces': expected a vertex number counted from 0 at [2], got 0.5",
+        ),
+        (
+            "positions={{0,0,0}}, faces={0,0}".to_owned(),
+            "key 'faces': expected 3 vertex numbers for each triangle, got 2 in all",
+        ),
+        (
+            "positions={{0,0,0}}, faces={{0,0,0}, {0,-1,0}}".to_owned(),
+            "key 'faces': face [2]: expected a table of vertex numbers counted from 0, got -1 at [2]",
+        ),
+        ("positions={{0,0,0}}, faces={{0,0,0}}".to_owned(), "key 'faces': the mesh has no face with an area"),
+    ] {
+        let got = message(&format!("gr.mesh{{{keys}}}"));
+        assert!(got.starts_with("scene.lua:1: gr.mesh: ") && got.ends_with(expected), "{got}\n{expected}");
+    }
+}
+
+#[test]
+fn meshes_by_keys_are_no_sign_of_the_old_skeleton() {
+    let script = "gr.mesh{positions={0,0,0, 1,0,0, 0,1,0}, faces={0,1,2}}";
+    assert_eq!(old_skeleton(script), (2.0, vec![]));
+}

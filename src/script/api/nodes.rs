@@ -19,7 +19,15 @@ pub(super) const FUNCTIONS: &[Function] = &[
 
 /// Makes a node that is named by argument 1, and its handle.
 pub(super) fn make_node(call: &Call, geometry: Option<Geometry>, joint: Option<DQuat>) -> Outcome<Value> {
-    let name = call.name(0)?;
+    make_named_node(call, call.name(0)?, geometry, joint)
+}
+
+pub(super) fn make_named_node(
+    call: &Call,
+    name: String,
+    geometry: Option<Geometry>,
+    joint: Option<DQuat>,
+) -> Outcome<Value> {
     call.context.guard.charge_memory(call.lua, State::NODE_BYTES + name.len())?;
     let id = call.state_mut().add_node(name, geometry, joint);
     Ok(Value::UserData(call.lua.create_userdata(NodeHandle(id))?))
