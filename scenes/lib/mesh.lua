@@ -47,9 +47,23 @@ function Mesh:smooth()
   return self
 end
 
+--- Leaves out normals and texture coordinates: broken faces, as of stone, with pictures laid on flat once a unit.
+--- `split` and what reads `normals` still see those that `smooth` made.
+function Mesh:facets()
+  self.broken = true
+  return self
+end
+
+local function node_of(mesh, name, faces)
+  return gr.mesh {
+    name = name, positions = mesh.positions, faces = faces,
+    normals = not mesh.broken and mesh.normals or nil, uvs = not mesh.broken and mesh.uvs or nil,
+  }
+end
+
 --- A node with this mesh, of one material.
 function Mesh:node(name, material)
-  local node = gr.mesh { name = name, positions = self.positions, normals = self.normals, uvs = self.uvs, faces = self.faces }
+  local node = node_of(self, name, self.faces)
   node:set_material(material)
   return node
 end
@@ -74,9 +88,7 @@ function Mesh:split(name, materials, choose, parent)
   end
   for key, material in pairs(materials) do
     if #parts[key] > 0 then
-      local node = gr.mesh {
-        name = name .. '-' .. key, positions = self.positions, normals = self.normals, uvs = self.uvs, faces = parts[key],
-      }
+      local node = node_of(self, name .. '-' .. key, parts[key])
       node:set_material(material)
       parent:add_child(node)
     end

@@ -97,7 +97,7 @@ function terrain.cliff(x0, x1, columns, rows)
       mesh:quad(a, a + rows + 1, a + rows + 2, a + 1)
     end
   end
-  return mesh:smooth()
+  return mesh:smooth():facets()
 end
 
 --- A ball of triangles about the origin, radius about 1, dented and cracked by noise; `seed` makes another one.
@@ -127,7 +127,7 @@ function terrain.rock(seed, rings, flatness)
       mesh:quad(a, a + 1, a + around + 2, a + around + 1)
     end
   end
-  return mesh:smooth()
+  return mesh:smooth():facets()
 end
 
 return terrain
