@@ -284,3 +284,27 @@ fn meshes_by_keys_are_no_sign_of_the_old_skeleton() {
     let script = "gr.mesh{positions={0,0,0, 1,0,0, 0,1,0}, faces={0,1,2}}";
     assert_eq!(old_skeleton(script), (2.0, vec![]));
 }
+
+#[test]
+fn a_mesh_may_be_shared_under_another_material() {
+    let script = "local a = gr.mesh{positions={0,0,0, 1,0,0, 0,1,0}, faces={0,1,2}}
+                  root = gr.node('n') root:add_child(a) root:add_child(gr.mesh{name='b', same_as=a})";
+    let scenes = Sandbox::new().load(&format!("{script} {RENDER}")).unwrap();
+    let nodes = scenes[0].graph.nodes.iter().filter_map(|node| node.geometry.as_ref());
+    let meshes: Vec<_> = nodes
+        .filter_map(|geometry| match &geometry.shape {
+            Shape::Mesh(mesh) => Some(Arc::as_ptr(mesh)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(meshes.len(), 2);
+    assert_eq!(meshes[0], meshes[1]);
+    for (arguments, expected) in [
+        ("{same_as=gr.sphere('s')}", "key 'same_as': expected a node with a mesh"),
+        ("{same_as=3}", "key 'same_as': expected a node, got 3"),
+        ("{same_as=gr.sphere('s'), faces={0,1,2}}", "cannot stand together with"),
+    ] {
+        let text = message(&format!("gr.mesh{arguments}"));
+        assert!(text.contains("scene.lua:1: gr.mesh: ") && text.contains(expected), "{text}");
+    }
+}

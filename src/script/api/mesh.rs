@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(super) const FUNCTIONS: &[Function] = &[("gr.mesh", 3, mesh)];
 
 /// The table's keys.
-const KEYS: &[&str] = &["name", "file", "positions", "faces", "normals", "uvs", "smooth"];
+const KEYS: &[&str] = &["name", "file", "same_as", "positions", "faces", "normals", "uvs", "smooth"];
 
 /// `gr.mesh{…}` with [`KEYS`], `gr.mesh(name, 'file.obj')` or `gr.mesh(name, vertices, faces)`.
 fn mesh(call: &Call) -> Outcome<Value> {
@@ -41,11 +41,12 @@ fn positional(call: &Call) -> Outcome<(String, Arc<Mesh>)> {
 }
 
 fn from_fields(call: &Call, fields: &Fields) -> Outcome<(String, Arc<Mesh>)> {
-    fields.exclude(&[&["file"], &["positions", "faces", "normals", "uvs", "smooth"]])?;
+    fields.exclude(&[&["file"], &["same_as"], &["positions", "faces", "normals", "uvs", "smooth"]])?;
     fields.exclude(&[&["normals"], &["smooth"]])?;
     let name = fields.get("name").or("mesh".to_owned(), |given| given.text("a name"))?;
     let mesh = match fields.get("file") {
         file if !file.absent() => from_file(call, &file)?,
+        _ if fields.has("same_as") => of_node(&fields.get("same_as"))?,
         _ => {
             let positions = positions(&fields.get("positions"))?;
             let count = positions.len();
@@ -70,6 +71,15 @@ fn from_file(call: &Call, given: &Given) -> Outcome<Arc<Mesh>> {
     charge(call, &mesh)?;
     call.state_mut().meshes.insert(real, Arc::clone(&mesh));
     Ok(mesh)
+}
+
+/// The mesh of another node, shared: the new node may have a material of its own.
+fn of_node(given: &Given) -> Outcome<Arc<Mesh>> {
+    let node = given.node()?;
+    match &given.call.state().graph().node(node).geometry {
+        Some(Geometry { shape: Shape::Mesh(mesh), .. }) => Ok(Arc::clone(mesh)),
+        _ => Err(given.unexpected("a node with a mesh")),
+    }
 }
 
 /// Of a [`Mesh`].
