@@ -20,8 +20,8 @@ end
 
 -- Waves {across x, across z, height, whole periods in the loop, start}; whole periods are what closes the loop.
 local waves = {
-  { 0.55, 0.95, 0.055, 1, 0.0 }, { -0.80, 1.30, 0.035, 1, 1.3 }, { 1.90, 0.60, 0.018, 2, 2.1 },
-  { -1.20, 2.60, 0.013, 2, 4.0 }, { 3.10, -2.40, 0.008, 3, 0.7 }, { 2.30, 4.10, 0.007, 3, 5.2 },
+  { 0.55, 0.95, 0.055, 1, 0.0 }, { -0.80, 1.30, 0.035, 1, 1.3 }, { 1.90, 0.60, 0.024, 2, 2.1 },
+  { -1.20, 2.60, 0.020, 2, 4.0 }, { 3.10, -2.40, 0.012, 3, 0.7 }, { 2.30, 4.10, 0.010, 3, 5.2 },
 }
 --- The water's height at (x, z) and its slopes in x and z.
 local function wave(x, z)
@@ -51,7 +51,8 @@ for j = 0, rows - 1 do
   end
 end
 scene:add_child(surface:node('water', gr.material {
-  diffuse = { 0, 0.01, 0.015 }, specular = { 0.6, 0.6, 0.6 }, shininess = 250, reflection = 1, ior = 1.33, casts_shadow = false,
+  diffuse = { 0, 0.01, 0.015 }, specular = { 0.6, 0.6, 0.6 }, shininess = 250, reflection = 1, ior = 1.33,
+  casts_shadow = false,
 }))
 
 -- The basin: tiles of a few blues, and a rim of stone.
@@ -82,7 +83,8 @@ local valve = gr.material { diffuse = { 0.85, 0.85, 0.80 }, specular = { 0.3, 0.
 local function float(node, x, z, scale, turn)
   local y, sx, sz = wave(x, z)
   x, z = x + 0.10 * math.sin(phase + x), z + 0.08 * math.cos(phase + z)
-  shape.place(scene, node, x, y + 0.08, z, scale, turn + 5 * math.sin(phase + 2 * x), math.deg(math.atan(sz)), -math.deg(math.atan(sx)))
+  shape.place(scene, node, x, y + 0.08, z, scale, turn + 5 * math.sin(phase + 2 * x), math.deg(math.atan(sz)),
+    -math.deg(math.atan(sx)))
 end
 float(props.ring(cloths[1], valve), -1.25, 0.1, 1.0, 20)
 float(props.donut(), 1.15, 0.9, 0.95, 75)
@@ -93,5 +95,6 @@ gr.background { image = 'assets/sky.png' }
 local sun = gr.sphere_light { position = { -50, 70, 40 }, radius = 2.5, colour = { 0.88, 0.84, 0.74 } }
 gr.render {
   scene = scene, output = 'tubes.png', size = { 320, 200 }, samples = 16, max_depth = 4,
-  camera = { eye = { 0.2, 2.7, 6.0 }, look_at = { 0, -0.1, -0.6 }, fov = 36 }, lights = { sun }, ambient = { 0.42, 0.44, 0.48 },
+  camera = { eye = { 0.2, 2.7, 6.0 }, look_at = { 0, -0.1, -0.6 }, fov = 36 }, lights = { sun },
+  ambient = { 0.42, 0.44, 0.48 },
 }

@@ -1,15 +1,18 @@
 -- A waterfall in a forest, on a late afternoon.
--- Look for: the sheet that bends over the edge, parts into strands and ends in mist; the pool, which shows its bed near
--- the viewer and the forest further off; some hundred trees of a dozen kinds and tints; grass, ferns and
--- rocks; three swimming rings, one of them a doughnut; the lens, which is focused on the fall.
--- 1280x720, 36 camera samples a pixel: five to ten minutes on two CPU cores, of which two seconds are the script. FRAME n is
--- n / 25 seconds later.
+-- Look for: the water that bends over the edge, breaks into strands and ends in mist; the pool, which shows its bed
+-- near the viewer and the cliff further off; hundreds of trees, each with its own size and turn, and thousands of tufts
+-- of grass; ivy, ferns and moss where the rock has ledges; three swimming rings, one of them a doughnut, that lie in the
+-- water as the waves tilt them; the haze between the hills; the lens, which is focused on the fall.
+-- 1280x720, 36 camera samples a pixel: about five minutes on two CPU cores, two seconds of them for the script.
+-- FRAME n is n / 25 seconds later: the waves run, the water falls, the rings bob.
 
-local quality = 'full' -- or 'preview': fewer plants, 640x360, four samples, under a minute on two CPU cores
+local quality = 'full' -- or 'preview': fewer plants, 640x360, 4 samples: ten seconds or so
 
 local levels = {
-  full = { size = { 1280, 720 }, samples = 36, grid = 0.8, grass = 12000, trees = 1, strands = 1800, foam = 2000, drops = 700, cell = 0.11 },
-  preview = { size = { 640, 360 }, samples = 4, grid = 0.6, grass = 6000, trees = 0.6, strands = 1600, foam = 1000, drops = 300, cell = 0.14 },
+  full = { size = { 1280, 720 }, samples = 36, grid = 0.8, grass = 12000, trees = 1, strands = 1800, foam = 2000,
+    drops = 700, cell = 0.11 },
+  preview = { size = { 640, 360 }, samples = 4, grid = 0.6, grass = 6000, trees = 0.6, strands = 1600, foam = 1000,
+    drops = 300, cell = 0.14 },
 }
 local level = levels[quality]
 local time = gr.frame_cmd() / 25
@@ -32,8 +35,10 @@ local scene = gr.node('scene')
 
 math.randomseed(1)
 
-local rock = gr.material { texture = 'assets/rock.png', bump = 'assets/rock.png', specular = { 0.02, 0.02, 0.02 }, shininess = 10 }
-local wet_rock = gr.material { diffuse = { 0.045, 0.046, 0.042 }, specular = { 0.25, 0.25, 0.25 }, shininess = 40, bump = 'assets/rock.png' }
+local rock = gr.material { texture = 'assets/rock.png', bump = 'assets/rock.png', specular = { 0.02, 0.02, 0.02 },
+  shininess = 10 }
+local wet_rock = gr.material { diffuse = { 0.045, 0.046, 0.042 }, specular = { 0.25, 0.25, 0.25 }, shininess = 40,
+  bump = 'assets/rock.png' }
 local moss = gr.material { texture = 'assets/forest-floor.png', bump = 'assets/forest-floor.png' }
 local bed = gr.material { texture = 'assets/pebbles.png', bump = 'assets/pebbles.png' }
 local far_green = gr.material { diffuse = { 0.05, 0.075, 0.025 } }
@@ -59,7 +64,8 @@ end, scene)
 local boulders = {}
 for k = 1, 5 do
   local boulder = gr.node('boulder')
-  terrain.rock(13.7 * k, math.floor(34 * level.grid), 0.72):split('rock', { rock = rock, wet = wet_rock, moss = moss }, function(_, ny, _, x, y, z)
+  local mesh = terrain.rock(13.7 * k, math.floor(34 * level.grid), 0.72)
+  mesh:split('rock', { rock = rock, wet = wet_rock, moss = moss }, function(_, ny, _, x, y, z)
     local patch = gr.noise(1.9 * x + k, 1.9 * y, 1.9 * z)
     if ny > 0.62 - 0.3 * patch then return 'moss' end
     return y < -0.12 + 0.1 * patch and 'wet' or 'rock'
@@ -69,7 +75,9 @@ end
 local stones = {}
 for k = 1, 3 do
   local stone = gr.node('stone')
-  terrain.rock(71.3 * k, 12, 0.6):split('stone', { wet = wet_rock, rock = rock }, function(_, ny) return ny > 0.1 and 'rock' or 'wet' end, stone)
+  terrain.rock(71.3 * k, 12, 0.6):split('stone', { wet = wet_rock, rock = rock }, function(_, ny)
+    return ny > 0.1 and 'rock' or 'wet'
+  end, stone)
   stones[k] = stone
 end
 local function boulder(k, x, y, z, size, turn)
@@ -87,7 +95,8 @@ boulder(5, -2.9, -0.15, 8.4, 0.55, 110)
 boulder(4, -4.2, 0.15, 9.1, 0.7, 33)
 boulder(1, 6.9, 0.0, 1.6, 1.2, 222)
 boulder(2, 2.1, -0.30, 8.7, 0.5, 170)
-for _, p in ipairs(scatter.points { count = 260, tries = 12, x0 = -13, x1 = 16, z0 = -9, z1 = 13, spacing = 0.25, chance = function(x, z)
+for _, p in ipairs(scatter.points { count = 260, tries = 12, x0 = -13, x1 = 16, z0 = -9, z1 = 13, spacing = 0.25,
+  chance = function(x, z)
   local w = valley.inside_pool(x, z)
   return math.exp(-((w + 0.1) / 0.55) ^ 2)
 end }) do
@@ -102,7 +111,8 @@ math.randomseed(2)
 local pool = water.pool(-13, 20, -9.2, 13.4, level.cell, time, function(x, z)
   return height_at(x, z) < 0.3
 end):node('pool', gr.material {
-  diffuse = { 0, 0, 0 }, specular = { 0.5, 0.45, 0.35 }, shininess = 200, reflection = 1, ior = 1.33, casts_shadow = false,
+  diffuse = { 0, 0, 0 }, specular = { 0.5, 0.45, 0.35 }, shininess = 200, reflection = 1, ior = 1.33,
+  casts_shadow = false,
 })
 scene:add_child(pool)
 -- The water's own colour: light that it scatters on the way to the bed.
@@ -124,14 +134,16 @@ side.lip_z = terrain.face(side.x, side.lip_y) + 0.25
 local whites = { { 0.13, 0.17, 0.19 }, { 0.24, 0.28, 0.30 }, { 0.38, 0.40, 0.41 } }
 -- Whole and dark where it bends over the edge, whiter as it breaks up.
 local sheets = {
-  glass = gr.material { diffuse = { 0.06, 0.095, 0.09 }, specular = { 0.5, 0.5, 0.5 }, shininess = 60, reflection = 0.25, glossy = 0.1 },
+  glass = gr.material { diffuse = { 0.06, 0.095, 0.09 }, specular = { 0.5, 0.5, 0.5 }, shininess = 60,
+    reflection = 0.25, glossy = 0.1 },
   clear = gr.material { diffuse = { 0.055, 0.085, 0.095 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 },
   torn = gr.material { diffuse = { 0.12, 0.155, 0.17 }, specular = { 0.2, 0.2, 0.2 }, shininess = 20 },
 }
 for _, falls in ipairs { { left, level.strands, 0.034 }, { right, level.strands // 3, 0.028 }, { side, 110, 0.016 } } do
   local f = falls[1]
   water.sheet(f, 70, 70, time, 0.9):split('sheet', sheets, function(_, _, _, x, y)
-    local broken = (f.lip_y - y) / f.lip_y + 0.22 * gr.noise(4.5 * x, 0.5 * y, 0.5) + 0.10 * gr.noise(13 * x, 1.1 * y, 3.5)
+    local broken = (f.lip_y - y) / f.lip_y + 0.22 * gr.noise(4.5 * x, 0.5 * y, 0.5)
+      + 0.10 * gr.noise(13 * x, 1.1 * y, 3.5)
     return broken < 0.10 and 'glass' or broken < 0.32 and 'clear' or 'torn'
   end, scene)
   for k, mesh in ipairs(water.strands(f, falls[2], #whites, falls[3], time)) do
@@ -200,18 +212,23 @@ local broadleaves = grown({
   { height = 7.0, crown = 2.6, radius = 0.20, per_twig = 13, leaf = 0.26 },
   { height = 6.0, crown = 2.5, radius = 0.17, per_twig = 13, leaf = 0.24 },
   { height = 8.0, crown = 2.4, radius = 0.19, per_twig = 12, leaf = 0.26 },
-}, tree.broadleaf, { { 0.085, 0.130, 0.022 }, { 0.130, 0.150, 0.025 }, { 0.200, 0.150, 0.025 }, { 0.055, 0.105, 0.030 } })
+}, tree.broadleaf, {
+  { 0.085, 0.130, 0.022 }, { 0.130, 0.150, 0.025 }, { 0.200, 0.150, 0.025 }, { 0.055, 0.105, 0.030 },
+})
 
 local function forest(count, x0, x1, z0, z1, spacing, chance, share_of_spruces, low, high)
   math.randomseed(count)
-  for _, p in ipairs(scatter.points { count = math.floor(count * level.trees), tries = 8, x0 = x0, x1 = x1, z0 = z0, z1 = z1, spacing = spacing, chance = chance }) do
+  for _, p in ipairs(scatter.points { count = math.floor(count * level.trees), tries = 8, x0 = x0, x1 = x1,
+    z0 = z0, z1 = z1, spacing = spacing, chance = chance }) do
     local x, z = p[1], p[2]
     local kinds = math.random() < share_of_spruces and spruces or broadleaves
-    place(scene, kinds[math.random(#kinds)], x, height_at(x, z) - 0.1, z, between(low, high), between(0, 360), between(-3, 3), between(-3, 3), between(0.9, 1.15))
+    place(scene, kinds[math.random(#kinds)], x, height_at(x, z) - 0.1, z, between(low, high), between(0, 360),
+      between(-3, 3), between(-3, 3), between(0.9, 1.15))
   end
 end
 -- One near the viewer, whose boughs frame the picture.
-place(scene, grown({ { height = 6.4, crown = 3.4, radius = 0.24, per_twig = 30, leaf = 0.15 } }, tree.broadleaf, { { 0.095, 0.140, 0.022 } })[1],
+local framing = { height = 6.4, crown = 3.4, radius = 0.24, per_twig = 30, leaf = 0.15 }
+place(scene, grown({ framing }, tree.broadleaf, { { 0.095, 0.140, 0.022 } })[1],
   -3.3, height_at(-3.3, 10.4), 10.4, 1, 200)
 -- On the plateau, open along the river.
 forest(150, -40, 44, -42, 4, 1.6, function(x, z)
@@ -222,15 +239,22 @@ end, 0.6, 0.35, 0.85)
 -- On the hills.
 forest(420, -150, 150, -190, -40, 3.2, function(x, z) return 0.9 end, 0.75, 0.7, 1.3)
 -- At both sides of the pool.
-forest(20, -24, -10, -8, 12, 2.0, function(x, z) return valley.inside_pool(x, z) < -2 and valley.cliff_z(x) < z - 1.5 and 0.9 or 0 end, 0.3, 0.6, 1.0)
-forest(26, 9, 27, -8, 8, 2.0, function(x, z) return valley.inside_pool(x, z) < -1.6 and valley.cliff_z(x) < z - 1.5 and 0.9 or 0 end, 0.4, 0.6, 1.0)
+local function away_from_water(distance)
+  return function(x, z)
+    return valley.inside_pool(x, z) < -distance and valley.cliff_z(x) < z - 1.5 and 0.9 or 0
+  end
+end
+forest(20, -24, -10, -8, 12, 2.0, away_from_water(2.0), 0.3, 0.6, 1.0)
+forest(26, 9, 27, -8, 8, 2.0, away_from_water(1.6), 0.4, 0.6, 1.0)
 
 -- Bushes along the foot of the cliff.
-for _, p in ipairs(scatter.points { count = 70, tries = 12, x0 = -18, x1 = 21, z0 = -9, z1 = 3, spacing = 0.9, chance = function(x, z)
+for _, p in ipairs(scatter.points { count = 70, tries = 12, x0 = -18, x1 = 21, z0 = -9, z1 = 3, spacing = 0.9,
+  chance = function(x, z)
   local s = z - valley.cliff_z(x)
   return s > 1.6 and s < 5 and valley.inside_pool(x, z) < -0.4 and 0.8 or 0
 end }) do
-  place(scene, broadleaves[math.random(#broadleaves)], p[1], height_at(p[1], p[2]) - 0.3, p[2], between(0.15, 0.42), between(0, 360))
+  local bush = broadleaves[math.random(#broadleaves)]
+  place(scene, bush, p[1], height_at(p[1], p[2]) - 0.3, p[2], between(0.15, 0.42), between(0, 360))
 end
 
 -- Ferns and grass, the nearer the denser.
@@ -238,20 +262,25 @@ local ferns = {}
 for k, tint in ipairs { { 0.060, 0.125, 0.020 }, { 0.085, 0.140, 0.022 }, { 0.045, 0.105, 0.026 } } do
   ferns[k] = tree.fern(9 + k, 0.85):node('fern', leafy(tint))
 end
-for _, p in ipairs(scatter.points { count = 240, tries = 10, x0 = -16, x1 = 18, z0 = -8, z1 = 13, spacing = 0.5, chance = function(x, z)
+for _, p in ipairs(scatter.points { count = 240, tries = 10, x0 = -16, x1 = 18, z0 = -8, z1 = 13, spacing = 0.5,
+  chance = function(x, z)
   local w = valley.inside_pool(x, z)
   if w > -0.25 or valley.cliff_z(x) > z - 1 then return 0 end
   return 0.5 * step(-0.1, 0.5, gr.noise(0.4 * x, 0.4 * z, 4.5)) * math.exp(w / 5)
 end }) do
-  place(scene, ferns[math.random(3)], p[1], height_at(p[1], p[2]), p[2], between(0.5, 1.15), between(0, 360), between(-8, 8), between(-8, 8))
+  place(scene, ferns[math.random(3)], p[1], height_at(p[1], p[2]), p[2], between(0.5, 1.15), between(0, 360),
+    between(-8, 8), between(-8, 8))
 end
 local tufts = {}
-local grass_tints = { { 0.090, 0.140, 0.022 }, { 0.130, 0.165, 0.030 }, { 0.065, 0.120, 0.025 }, { 0.175, 0.165, 0.050 }, { 0.105, 0.150, 0.018 } }
+local grass_tints = { { 0.090, 0.140, 0.022 }, { 0.130, 0.165, 0.030 }, { 0.065, 0.120, 0.025 },
+  { 0.175, 0.165, 0.050 }, { 0.105, 0.150, 0.018 } }
 for k = 1, 10 do
   tufts[k] = tree.tuft(30, k <= 7 and 0.34 or 0.55, 0.16, 0.019):node('tuft', leafy(grass_tints[1 + k % #grass_tints]))
 end
-for _, p in ipairs(scatter.points { count = level.grass, tries = 8, x0 = -15, x1 = 17, z0 = -7, z1 = 14.5, chance = function(x, z)
-  if math.random() > 0.25 + 0.75 * step(4, 11, z) or height_at(x, z) < 0.1 or valley.cliff_z(x) > z - 0.8 then return 0 end
+for _, p in ipairs(scatter.points { count = level.grass, tries = 8, x0 = -15, x1 = 17, z0 = -7, z1 = 14.5,
+  chance = function(x, z)
+  if math.random() > 0.25 + 0.75 * step(4, 11, z) then return 0 end
+  if height_at(x, z) < 0.1 or valley.cliff_z(x) > z - 0.8 then return 0 end
   if (x + 0.35) ^ 2 + (z - 9.4) ^ 2 < 0.2 then return 0 end
   return 0.35 + 0.65 * step(-0.4, 0.3, gr.noise(0.6 * x, 0.6 * z, 9.5))
 end }) do
@@ -289,7 +318,8 @@ for _, p in ipairs(scatter.points { count = 420, tries = 10, x0 = -6, x1 = 9, z0
 end }) do
   local x, z = p[1], p[2]
   local k = 1 + math.floor(shape.clamp(1.5 + 2.2 * gr.noise(0.5 * x, 0.5 * z, 1.5) + between(-0.3, 0.3), 0, 2.99))
-  place(scene, flowers[k], x, height_at(x, z) + between(0.16, 0.30), z, between(0.8, 1.5), between(0, 360), between(0, 25), between(-15, 15))
+  place(scene, flowers[k], x, height_at(x, z) + between(0.16, 0.30), z, between(0.8, 1.5), between(0, 360),
+    between(0, 25), between(-15, 15))
 end
 
 -- On the cliff's ledges and along its edge: grass, ferns, small bushes and hanging ivy.
@@ -303,10 +333,12 @@ for i = 0, cliff.count - 1 do
   local nx, ny, nz = n[3 * i + 1], n[3 * i + 2], n[3 * i + 3]
   local up = ny / math.sqrt(nx * nx + ny * ny + nz * nz)
   local overgrown = gr.noise(0.21 * x, 0.25 * y, 3.5)
-  if y > 2.5 and up > 0.1 and overgrown > 0.12 and math.abs(x - fall.x) > 2.6 and x > -22 and x < 24 and math.random() < 0.028 / level.grid ^ 2 then
+  if y > 2.5 and up > 0.1 and overgrown > 0.12 and math.abs(x - fall.x) > 2.6 and x > -22 and x < 24
+    and math.random() < 0.028 / level.grid ^ 2 then
     place(scene, ivies[math.random(3)], x, y, z, between(0.6, 1.1), between(-20, 20))
   end
-  if up > 0.45 and y > 0.4 and math.abs(x - fall.x) > 2.1 and x > -22 and x < 24 and math.random() < 0.13 / level.grid ^ 2 then
+  if up > 0.45 and y > 0.4 and math.abs(x - fall.x) > 2.1 and x > -22 and x < 24
+    and math.random() < 0.13 / level.grid ^ 2 then
     local pick = math.random()
     if pick < 0.70 then
       place(scene, tufts[math.random(10)], x, y, z, between(0.5, 1.2), between(0, 360), 14)
@@ -327,18 +359,21 @@ local stripes = gr.material { texture = 'assets/stripes.png', specular = { 0.35,
 --- Floats `node` at (x, z): sunk by `draught`, and tilted as the waves are.
 local function float(node, x, z, scale, turn, draught)
   local sx, sz = water.slope(x, z, time)
-  place(scene, node, x, water.wave(x, z, time) - draught, z, scale, turn, math.deg(math.atan(sz)) + 4, -math.deg(math.atan(sx)) - 2)
+  place(scene, node, x, water.wave(x, z, time) - draught, z, scale, turn, math.deg(math.atan(sz)) + 4,
+    -math.deg(math.atan(sx)) - 2)
 end
 float(props.ring(stripes, bone), 2.9, 3.4, 0.85, 30, -0.08)
 float(props.donut(), 0.55, 5.6, 0.80, 75, -0.11)
-float(props.ring(gr.material { diffuse = { 0.80, 0.50, 0.05 }, specular = { 0.35, 0.35, 0.35 }, shininess = 50 }, bone), 4.6, -1.0, 0.85, 200, -0.08)
+local yellow = gr.material { diffuse = { 0.80, 0.50, 0.05 }, specular = { 0.35, 0.35, 0.35 }, shininess = 50 }
+float(props.ring(yellow, bone), 4.6, -1.0, 0.85, 200, -0.08)
 
 local tones = {}
 for k, tone in ipairs { { 0.17, 0.125, 0.085 }, { 0.21, 0.16, 0.11 }, { 0.135, 0.105, 0.08 } } do
   tones[k] = gr.material { diffuse = tone, bump = 'assets/floor.png', specular = { 0.05, 0.05, 0.05 }, shininess = 15 }
 end
 local post = gr.material { texture = 'assets/trunk.png', bump = 'assets/trunk.png' }
-local iron = gr.material { diffuse = { 0.02, 0.02, 0.02 }, specular = { 0.3, 0.3, 0.3 }, shininess = 50, reflection = 0.15, glossy = 0.2 }
+local iron = gr.material { diffuse = { 0.02, 0.02, 0.02 }, specular = { 0.3, 0.3, 0.3 }, shininess = 50,
+  reflection = 0.15, glossy = 0.2 }
 local flame = gr.material { diffuse = { 0.5, 0.3, 0.1 }, emission = { 1.6, 0.95, 0.35 }, casts_shadow = false }
 place(scene, props.jetty(20, tones, post, iron, flame), -4.9, 0.52, 8.2, 1, -38)
 

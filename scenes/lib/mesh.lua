@@ -61,9 +61,15 @@ local function node_of(mesh, name, faces)
   }
 end
 
---- A node with this mesh, of one material.
+--- A node with this mesh, of one material. More nodes of the same mesh share it: it has to be finished by then.
 function Mesh:node(name, material)
-  local node = node_of(self, name, self.faces)
+  local node
+  if self.first then
+    node = gr.mesh { name = name, same_as = self.first }
+  else
+    node = node_of(self, name, self.faces)
+    self.first = node
+  end
   node:set_material(material)
   return node
 end

@@ -26,7 +26,8 @@ end
 function props.donut()
   local R, r = 0.60, 0.26
   local donut = gr.node('donut')
-  put(donut, gr.torus('dough', R, r), gr.material { diffuse = { 0.62, 0.33, 0.11 }, specular = { 0.15, 0.15, 0.15 }, shininess = 20 })
+  put(donut, gr.torus('dough', R, r), gr.material { diffuse = { 0.62, 0.33, 0.11 },
+    specular = { 0.15, 0.15, 0.15 }, shininess = 20 })
   local icing = gr.material { diffuse = { 0.80, 0.22, 0.36 }, specular = { 0.5, 0.5, 0.5 }, shininess = 60 }
   local cap = put(donut, gr.torus('icing', R, r), icing)
   cap:scale(1.008, 0.90, 1.008)
@@ -40,7 +41,8 @@ function props.donut()
     lobe:translate(outside and R + 0.968 * r or R - 0.968 * r, between(0.04, 0.09), 0)
     lobe:rotate('y', azimuth)
   end
-  local colours = { { 0.95, 0.85, 0.15 }, { 0.15, 0.45, 0.85 }, { 0.95, 0.95, 0.90 }, { 0.25, 0.70, 0.25 }, { 0.95, 0.45, 0.10 } }
+  local colours = { { 0.95, 0.85, 0.15 }, { 0.15, 0.45, 0.85 }, { 0.95, 0.95, 0.90 }, { 0.25, 0.70, 0.25 },
+    { 0.95, 0.45, 0.10 } }
   local sprinkles = {}
   for k, colour in ipairs(colours) do
     local sprinkle = gr.node('sprinkle')

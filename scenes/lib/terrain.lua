@@ -58,7 +58,8 @@ local function relief(x, y)
   local layer = bed / 1.15 + 0.5 * math.sin(1.3 * bed)
   local number = math.floor(layer)
   local within = layer - number
-  local ledge = 0.75 * gr.noise(0.23 * x + 7.7 * number, 2.3 * number, 0.5) - 0.22 * step(0.7, 1, within) * (1 + gr.noise(0.5 * x, 3.1 * number, 0.5))
+  local undercut = 0.22 * step(0.7, 1, within) * (1 + gr.noise(0.5 * x, 3.1 * number, 0.5))
+  local ledge = 0.75 * gr.noise(0.23 * x + 7.7 * number, 2.3 * number, 0.5) - undercut
   local block = 0.5 * gr.noise(0.75 * x + 3.3 * number, 0.3 * bed, 1.5 * number + 0.5)
   local buttress = 3.6 * (ridged(0.11 * x + 0.06 * y, 0.04 * y, 5.5, 3) - 0.5)
   local crag = 0.8 * (ridged(0.45 * x, 0.30 * y + 0.1 * x, 2.5, 3) - 0.5)
@@ -78,8 +79,8 @@ function terrain.face(x, y)
   return face(x, y, (y + 2.5) / (valley.cliff_top(x) + 2.5))
 end
 
---- The cliff of the valley between x0 and x1: a curtain from below the pool's level to its top, and from there back onto
---- the plateau.
+--- The cliff of the valley between x0 and x1: a curtain from below the pool's level to its top, and from there back
+--- onto the plateau.
 function terrain.cliff(x0, x1, columns, rows)
   local mesh = Mesh.new()
   for i = 0, columns do
@@ -109,7 +110,8 @@ function terrain.rock(seed, rings, flatness)
     for i = 0, around do
       local azimuth = 2 * math.pi * (i % around) / around
       local x, y, z = math.sin(polar) * math.cos(azimuth), math.cos(polar), math.sin(polar) * math.sin(azimuth)
-      local r = 1 + 0.42 * gr.noise(0.9 * x + seed, 0.9 * y, 0.9 * z) - 0.28 * step(0.55, 0.95, ridged(0.8 * x + seed, 0.8 * y, 0.8 * z, 2))
+      local crack = 0.28 * step(0.55, 0.95, ridged(0.8 * x + seed, 0.8 * y, 0.8 * z, 2))
+      local r = 1 + 0.42 * gr.noise(0.9 * x + seed, 0.9 * y, 0.9 * z) - crack
         + 0.16 * fractal(2.4 * x, 2.4 * y + seed, 2.4 * z, 3)
       -- Cut by a few planes, which gives it faces.
       for k = 1, 6 do

@@ -56,7 +56,8 @@ function tree.leaf(mesh, x, y, z, dx, dy, dz, size, width, nx, ny, nz)
   local half, lift = width * size, 0.12 * size
   local a = mesh:vertex(x, y, z, mx, my, mz)
   local b = mesh:vertex(x + dx * size, y + dy * size, z + dz * size, mx, my, mz)
-  local px, py, pz = x + 0.45 * dx * size + lift * bx, y + 0.45 * dy * size + lift * by, z + 0.45 * dz * size + lift * bz
+  local px, py, pz = x + 0.45 * dx * size + lift * bx, y + 0.45 * dy * size + lift * by,
+    z + 0.45 * dz * size + lift * bz
   local e = mesh:vertex(px + half * ax, py + half * ay, pz + half * az, mx - 0.4 * ax, my - 0.4 * ay, mz - 0.4 * az)
   local f = mesh:vertex(px - half * ax, py - half * ay, pz - half * az, mx + 0.4 * ax, my + 0.4 * ay, mz + 0.4 * az)
   mesh:triangle(a, e, b)
@@ -78,7 +79,8 @@ function tree.broadleaf(o)
       local size = sqrt(lx * lx + ly * ly + lz * lz) + 1e-6
       local nx, ny, nz = px, (py - middle) + 0.3 * height, pz
       local far = sqrt(nx * nx + ny * ny + nz * nz) + 1e-6
-      tree.leaf(leaves, px, py, pz, lx / size, ly / size, lz / size, o.leaf * between(0.7, 1.25), 0.34, nx / far, ny / far, nz / far)
+      tree.leaf(leaves, px, py, pz, lx / size, ly / size, lz / size, o.leaf * between(0.7, 1.25), 0.34,
+        nx / far, ny / far, nz / far)
     end
   end
 
@@ -88,7 +90,8 @@ function tree.broadleaf(o)
     local sx, sy, sz = x, y, z
     for k = 1, steps do
       local bend = level == 0 and 0.10 or 0.22
-      dx, dy, dz = dx + between(-bend, bend), dy + between(-bend, bend) + (level == 0 and 0.05 or 0.09), dz + between(-bend, bend)
+      dx, dy, dz = dx + between(-bend, bend), dy + between(-bend, bend) + (level == 0 and 0.05 or 0.09),
+        dz + between(-bend, bend)
       local size = sqrt(dx * dx + dy * dy + dz * dz)
       dx, dy, dz = dx / size, dy / size, dz / size
       sx, sy, sz = sx + dx * length / steps, sy + dy * length / steps, sz + dz * length / steps
@@ -107,7 +110,7 @@ function tree.broadleaf(o)
         end
       end
     end
-    if level < 3 then tree.tube(wood, points, level == 0 and 12 or level == 1 and 6 or 3, level == 0 and 0.25 or nil) end
+    tree.tube(wood, points, level == 0 and 12 or level == 1 and 6 or 3, level == 0 and 0.25 or nil)
   end
   -- The root flare is the first bit of the trunk.
   branch(0, -0.3, 0, between(-0.08, 0.08), 1, between(-0.08, 0.08), height * 0.82, o.radius, 0)
@@ -152,11 +155,13 @@ function tree.conifer(o)
           tree.leaf(needles, bx, by, bz, ca / size, fall / size, sa / size, twig, 0.13, c * 0.75, 0.75, s * 0.75)
           if twig > 0.25 then
             tree.leaf(needles, bx + 0.4 * twig * ca, by + 0.4 * twig * fall, bz + 0.4 * twig * sa,
-              cos(azimuth + 0.3 * open), fall - 0.15, sin(azimuth + 0.3 * open), 0.6 * twig, 0.15, c * 0.75, 0.75, s * 0.75)
+              cos(azimuth + 0.3 * open), fall - 0.15, sin(azimuth + 0.3 * open), 0.6 * twig, 0.15,
+              c * 0.75, 0.75, s * 0.75)
           end
         end
       end
-      tree.leaf(needles, bend_x * t * t + c * length, y + (rise - droop * 0.8 + 0.1) * length, bend_z * t * t + s * length,
+      tree.leaf(needles, bend_x * t * t + c * length, y + (rise - droop * 0.8 + 0.1) * length,
+        bend_z * t * t + s * length,
         c * 0.95, -0.2, s * 0.95, 0.3 * length + 0.1, 0.16, c * 0.75, 0.75, s * 0.75)
     end
     y = y + mix(o.whorl, 0.5 * o.whorl, t) * between(0.8, 1.2)
@@ -164,7 +169,8 @@ function tree.conifer(o)
   -- The leader at the top.
   for _ = 1, 6 do
     local a = between(0, 2 * pi)
-    tree.leaf(needles, bend_x, height * 0.97, bend_z, 0.25 * cos(a), 0.95, 0.25 * sin(a), 0.05 * height, 0.1, cos(a), 0.4, sin(a))
+    tree.leaf(needles, bend_x, height * 0.97, bend_z, 0.25 * cos(a), 0.95, 0.25 * sin(a), 0.05 * height, 0.1,
+      cos(a), 0.4, sin(a))
   end
   return wood, needles
 end
@@ -240,7 +246,8 @@ function tree.fern(fronds, length)
         local half = 0.021 * size
         local a = mesh:vertex(x - half * c, y - half * 0.4, z - half * s, 0.3 * c, 0.9, 0.3 * s)
         local b = mesh:vertex(x + half * c, y + half * 0.4, z + half * s, 0.3 * c, 0.9, 0.3 * s)
-        mesh:triangle(a, b, mesh:vertex(x + leaflet * dx, y + leaflet * dy, z + leaflet * dz, 0.5 * cos(open), 0.8, 0.5 * sin(open)))
+        mesh:triangle(a, b, mesh:vertex(x + leaflet * dx, y + leaflet * dy, z + leaflet * dz, 0.5 * cos(open), 0.8,
+          0.5 * sin(open)))
       end
     end
   end

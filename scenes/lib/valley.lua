@@ -60,12 +60,4 @@ function valley.height(x, z)
   return mix(low, top, step(-0.2, 1.6, s))
 end
 
---- Upward part of the ground's unit normal: 1 is level.
-function valley.level(x, z)
-  local e = 0.25
-  local gx = (valley.height(x + e, z) - valley.height(x - e, z)) / (2 * e)
-  local gz = (valley.height(x, z + e) - valley.height(x, z - e)) / (2 * e)
-  return 1 / math.sqrt(1 + gx * gx + gz * gz), gx, gz
-end
-
 return valley

@@ -51,8 +51,8 @@ function water.pool(x0, x1, z0, z1, cell, time, wet)
   return mesh:smooth()
 end
 
---- Where water of the strand `u` (-1 to 1 across the edge) is, as a function of the seconds since it left the edge; before
---- that it comes over the plateau. The edge is uneven: some strands leave faster and lower than others.
+--- Where water of the strand `u` (-1 to 1 across the edge) is, as a function of the seconds since it left the edge;
+--- before that it comes over the plateau. The edge is uneven: some strands leave faster and lower than others.
 local function course(fall, u)
   local speed = 1.15 + 0.35 * noise(2.6 * u, 3.3, 0.5)
   local edge_y = fall.lip_y - 0.22 * math.abs(u) ^ 3 + 0.25 * noise(1.9 * u, 0.3, 8.8)
@@ -93,8 +93,8 @@ function water.sheet(fall, columns, rows, time, inset)
   return mesh:smooth()
 end
 
---- Strands of white water: ribbons that run down the fall, `count` of them in `kinds` meshes. Near the edge the water is
---- still whole, so that few begin there; towards the foot each is torn to threads.
+--- Strands of white water: ribbons that run down the fall, `count` of them in `kinds` meshes. Near the edge the water
+--- is still whole, and they are thin; towards the foot they part.
 function water.strands(fall, count, kinds, thickness, time)
   local meshes = {}
   for k = 1, kinds do meshes[k] = Mesh.new() end
@@ -169,7 +169,9 @@ function water.foam(count, time, put)
     local x, z = fall.x + (1.2 + r) * math.cos(angle) * 1.15, fall.foot_z + (0.15 + r) * math.sin(angle) - 0.2
     local radius = between(0.015, 0.055) * math.exp(-r / 6)
     local streak = noise(1.3 * x, 1.3 * z, 7.5) + 0.55 * noise(3.7 * x, 3.7 * z, 1.5)
-    if streak > -0.25 + 0.16 * r and valley.inside_pool(x, z) > 0.1 then put(x, water.wave(x, z, time) + 0.1 * radius, z, radius) end
+    if streak > -0.25 + 0.16 * r and valley.inside_pool(x, z) > 0.1 then
+      put(x, water.wave(x, z, time) + 0.1 * radius, z, radius)
+    end
   end
 end
 
