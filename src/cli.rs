@@ -3,8 +3,10 @@
 mod args;
 mod compare;
 mod console;
+mod delivery;
 mod doctor;
 mod interrupt;
+mod plan;
 mod progress;
 mod reference;
 mod render;
@@ -15,6 +17,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use console::Console;
 use gpu_trace::Error;
+use plan::Plan;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -30,22 +33,25 @@ pub fn run() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),
     };
+    let plan = match arguments.render.as_ref().map(Plan::new).transpose() {
+        Ok(plan) => plan,
+        Err(error) => return usage(&error),
+    };
     let console = Console::new(arguments.quiet, arguments.verbose);
-    let result = match (&arguments.command, &arguments.render) {
+    let result = match (&arguments.command, arguments.render.as_ref().zip(plan)) {
         (Some(Command::Doctor), _) => doctor::run(),
         (Some(Command::Compare(arguments)), _) => compare::run(arguments),
-        (None, Some(arguments)) => render::run(arguments, &console),
+        (None, Some((arguments, plan))) => render::run(arguments, &plan, &console),
         // clap asks for a scene where there is no subcommand.
         (None, None) => Err(Error::Scene("no scene was given; see --help".to_owned())),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
+        // Whoever was interrupted has said what there is to show for it.
+        Err(Error::Interrupted) => ExitCode::from(EXIT_INTERRUPTED),
         Err(error) => {
             console.error(&error.to_string());
-            match error {
-                Error::Interrupted => ExitCode::from(EXIT_INTERRUPTED),
-                _ => ExitCode::FAILURE,
-            }
+            ExitCode::FAILURE
         }
     }
 }

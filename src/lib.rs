@@ -35,6 +35,7 @@
 //! }
 //! ```
 
+pub mod animation;
 pub mod cpu;
 pub mod device;
 pub mod error;

@@ -30,6 +30,16 @@ impl AddAssign for Tally {
     }
 }
 
+/// What renderers keep from scene to scene: how often it was made, and how often that was spared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PrepareCounts {
+    pub pipelines_compiled: u64,
+    pub pipelines_reused: u64,
+    /// Arrays of scenes.
+    pub buffers_uploaded: u64,
+    pub buffers_reused: u64,
+}
+
 /// A device that renders passes of samples into the film of a band of rows.
 pub trait Renderer {
     /// Uploads the scene and specialises the program to it.
@@ -46,4 +56,9 @@ pub trait Renderer {
 
     /// Adds the sums of the band to the film.
     fn end_band(&mut self, film: &mut Film) -> Result<()>;
+
+    /// What `prepare` has done so far; a renderer without programs and uploads counts nothing.
+    fn prepare_counts(&self) -> PrepareCounts {
+        PrepareCounts::default()
+    }
 }

@@ -3,6 +3,7 @@
 mod support;
 
 mod analytic;
+mod animation;
 mod backgrounds;
 mod bump;
 mod cli;

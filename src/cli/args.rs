@@ -1,8 +1,10 @@
 //! What may stand on the command line. Whatever can be judged without a scene is judged here.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use gpu_trace::animation::FrameRange;
 use gpu_trace::device::DeviceChoice;
-use gpu_trace::film::{Film, Mask, OutputFormat};
+use gpu_trace::film::{Film, Mask};
+use gpu_trace::scene::FrameRate;
 use gpu_trace::script::ConventionOverrides;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -12,11 +14,16 @@ Examples:
   gpu-trace scenes/first.lua                    render it on the best device there is
   gpu-trace scenes/first.lua -o out.png --size 1920x1080 --samples 64
   gpu-trace swing.lua 12                        frame 12 of an animation: gr.frame_cmd() gives 12
+  gpu-trace swing.lua --frames 1..100 -o out/frame-%04d.png --resume
+  gpu-trace swing.lua --frames 1..100 -o swing.gif          or swing.apng, or swing.mp4 by an installed ffmpeg
+  gpu-trace swing.lua --frames 1..100 -o - | ffplay -       uncompressed (y4m) through a pipe
   gpu-trace scene.lua --device cpu -q --json -  no talk, the figures as JSON on standard output
   gpu-trace doctor                              the devices, and whether they compute right
   gpu-trace compare a.png b.png --fail-above 0.002
 
 The exit code is 0 when every picture was written, 2 for wrong arguments, 130 after an interrupt, else 1.
+Ctrl-C ends a picture or a clip, which then is not written; of numbered frames it lets the one in hand be finished.
+A second Ctrl-C ends the program at once. No file is ever left half-written.
 A scene whose file is called 'doctor', 'compare' or 'help' is reached as './doctor'.";
 
 /// Render a scene that is described by a Lua program
@@ -24,7 +31,7 @@ A scene whose file is called 'doctor', 'compare' or 'help' is reached as './doct
 #[command(name = "gpu-trace", version, after_help = EXAMPLES, max_term_width = 120)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true, arg_required_else_help = true)]
 #[command(
-    override_usage = "gpu-trace [OPTIONS] SCENE.lua [FRAME]\n       gpu-trace doctor\n       gpu-trace compare A.png B.png [--mask alpha] [--fail-above X]"
+    override_usage = "gpu-trace [OPTIONS] SCENE.lua [FRAME]\n       gpu-trace [OPTIONS] SCENE.lua --frames A..B[:STEP] [-o NAME-%04d.png|CLIP]\n       gpu-trace doctor\n       gpu-trace compare A.png B.png [--mask alpha] [--fail-above X]"
 )]
 pub struct Arguments {
     #[command(subcommand)]
@@ -56,13 +63,38 @@ pub struct RenderArguments {
     #[arg(value_name = "SCENE.lua")]
     pub scene: PathBuf,
 
-    /// The number that gr.frame_cmd() gives the scene
-    #[arg(value_name = "FRAME", default_value_t = 0, allow_negative_numbers = true)]
-    pub frame: u32,
+    /// The number that gr.frame() gives the scene, 0 if left out
+    #[arg(value_name = "FRAME", allow_negative_numbers = true, conflicts_with = "frames")]
+    pub frame: Option<u32>,
 
-    /// Write the picture here, and not where the scene says; for scenes that render one picture
-    #[arg(short, long, value_name = "OUT.png", value_parser = parse_output, help_heading = "Picture")]
+    /// Write the picture here, and not where the scene says; for scenes that render one picture. With --frames: a .png
+    /// with %d or %04d for the frame's number, or a clip: .gif, .apng, .mp4, or '-' for y4m on standard output
+    #[arg(short, long, value_name = "OUT", help_heading = "Picture")]
     pub output: Option<PathBuf>,
+
+    /// Render these frames, both ends included; each runs the script anew, with its number from gr.frame()
+    #[arg(long, value_name = "A..B[:STEP]", allow_hyphen_values = true, help_heading = "Animation")]
+    pub frames: Option<FrameRange>,
+
+    /// Frames a second, of clips and for gr.time(): a number, or a fraction such as 30000/1001
+    #[arg(long, value_name = "N", default_value = "25", allow_hyphen_values = true, help_heading = "Animation")]
+    pub fps: FrameRate,
+
+    /// What gr.frames() gives the scene: the frames of the whole animation [default: those of --frames; 1 without]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Animation")]
+    pub total_frames: Option<u32>,
+
+    /// Leave out the frames whose numbered files are there and whole
+    #[arg(long, requires = "frames", help_heading = "Animation")]
+    pub resume: bool,
+
+    /// Go on with the other numbered frames after one that failed; the exit code is 1 all the same
+    #[arg(long, requires = "frames", help_heading = "Animation")]
+    pub keep_going: bool,
+
+    /// Frames that are prepared at a time (script and flattening) while another is rendered; each takes memory
+    #[arg(long, value_name = "N", requires = "frames", default_value_t = 2, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=64), help_heading = "Animation")]
+    pub jobs: u16,
 
     /// Width and height in pixels, in place of the scene's
     #[arg(long, value_name = "WxH", help_heading = "Picture")]
@@ -79,6 +111,10 @@ pub struct RenderArguments {
     /// Seed of all random numbers, math.random's included [default: the scene's]
     #[arg(long, allow_negative_numbers = true, value_name = "N", help_heading = "Sampling")]
     pub seed: Option<u32>,
+
+    /// Noise of its own in every frame: a seed from --seed (or the scene's) and the frame's number. math.random stays
+    #[arg(long, help_heading = "Sampling")]
+    pub seed_per_frame: bool,
 
     /// The most reflections and refractions one after another, in place of the scene's
     #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000), help_heading = "Sampling")]
@@ -97,7 +133,8 @@ pub struct RenderArguments {
     #[arg(long, help_heading = "Device")]
     pub checked: bool,
 
-    /// Write what was rendered and how fast, one JSON object a picture and line; '-' is standard output
+    /// Write what was rendered and how fast, one JSON object a picture and line, and one at the end of a batch; '-' is
+    /// standard output
     #[arg(long, value_name = "FILE", help_heading = "Messages")]
     pub json: Option<PathBuf>,
 }
@@ -150,12 +187,6 @@ impl FromStr for Size {
         Film::check_size(width, height).map_err(|error| error.to_string())?;
         Ok(Size([width, height]))
     }
-}
-
-fn parse_output(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    // Not the error's own text, which repeats the path that clap already shows.
-    OutputFormat::from_path(&path).map(|_| path).map_err(|_| OutputFormat::expected())
 }
 
 fn parse_conventions(text: &str) -> Result<ConventionOverrides, String> {

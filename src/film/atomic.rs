@@ -1,7 +1,8 @@
 //! Files that appear whole or not at all: written under another name in the same folder, then renamed.
 
+use super::unfinished::{self, Registration};
 use crate::{Error, Result};
-use std::fs::{self, OpenOptions, Permissions};
+use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -21,13 +22,12 @@ pub fn check_writable(action: &'static str, path: &Path) -> Result<()> {
                 _ => return Err(error),
             }
         }
-        temporary_file(folder, None).map(drop)
+        temporary_file(folder, "", None).map(drop)
     };
     check().map_err(|source| Error::file(action, path, source))
 }
 
-/// Lets `write` fill a new file that then takes the place of `path`. Missing folders are made. A new file gets the
-/// permissions of any created file (the process's umask), a replaced one keeps its own.
+/// Lets `write` fill a new file that then takes the place of `path`; see [`AtomicFile`].
 ///
 /// # Errors
 /// [`Error::File`] with `action`; an existing file is then as it was, and no temporary one is left.
@@ -36,18 +36,61 @@ pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<()> {
-    let replace = || -> io::Result<()> {
+    let fill = || -> io::Result<AtomicFile> {
+        let file = AtomicFile::create(path, "")?;
+        let mut out = BufWriter::new(file.handle()?);
+        write(&mut out)?;
+        out.flush()?;
+        Ok(file)
+    };
+    fill().and_then(AtomicFile::commit).map_err(|source| Error::file(action, path, source))
+}
+
+/// A file in the making, under a temporary name in the folder of the one that it will be.
+pub struct AtomicFile {
+    target: Target,
+    file: NamedTempFile,
+    registration: Registration,
+}
+
+impl AtomicFile {
+    /// Begins a file whose temporary name ends in `suffix`. Missing folders are made. A new file gets the permissions
+    /// of any created file (the process's umask), a replaced one keeps its own.
+    ///
+    /// # Errors
+    /// Where the folder takes no new file, or the file may not be replaced.
+    pub fn create(path: &Path, suffix: &str) -> io::Result<Self> {
         let target = Target::find(path)?;
         fs::create_dir_all(target.folder())?;
-        let file = temporary_file(target.folder(), target.permissions.clone())?;
-        let mut out = BufWriter::new(file);
-        write(&mut out)?;
-        // On an error the temporary file goes as it is dropped.
-        let file = out.into_inner().map_err(|error| error.into_error())?;
-        file.persist(&target.path).map_err(|error| error.error)?;
-        Ok(())
-    };
-    replace().map_err(|source| Error::file(action, path, source))
+        let (file, registration) = unfinished::register(|| {
+            let file = temporary_file(target.folder(), suffix, target.permissions.clone())?;
+            let temporary = file.path().to_owned();
+            Ok::<_, io::Error>((file, Box::new(move || drop(fs::remove_file(&temporary))) as _))
+        })?;
+        Ok(AtomicFile { target, file, registration })
+    }
+
+    /// A handle to write to.
+    ///
+    /// # Errors
+    /// Where the system has no more.
+    pub fn handle(&self) -> io::Result<File> {
+        self.file.as_file().try_clone()
+    }
+
+    /// The temporary name, for other programs that write the file.
+    pub fn temporary_path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// Gives the file its name, and takes that of an existing one.
+    ///
+    /// # Errors
+    /// Where the system refuses; an existing file is then as it was, and the temporary one is gone.
+    pub fn commit(self) -> io::Result<()> {
+        let AtomicFile { target, file, registration } = self;
+        registration.finish(|| file.persist(&target.path).map(drop).map_err(|error| error.error))
+    }
 }
 
 /// The file to replace, with symbolic links followed: the link stays, and what it points to is replaced.
@@ -88,9 +131,9 @@ fn or_current(folder: &Path) -> &Path {
 
 /// A file in this folder that is removed when dropped. Without given permissions it gets those of any created file,
 /// where tempfile's default is that nobody else may read it.
-fn temporary_file(folder: &Path, permissions: Option<Permissions>) -> io::Result<NamedTempFile> {
+fn temporary_file(folder: &Path, suffix: &str, permissions: Option<Permissions>) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".gpu-trace-");
+    builder.prefix(".gpu-trace-").suffix(suffix);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let file = builder.tempfile_in(folder).map_err(without_path)?;

@@ -1,16 +1,19 @@
 //! From sums of samples to a picture file, and from two picture files to how alike they look.
 
 mod atomic;
+pub mod clip;
 mod compare;
 mod output;
 mod png;
 mod resolve;
 mod transfer;
+mod unfinished;
 
-pub use atomic::{check_writable, write_atomically};
+pub use atomic::{AtomicFile, check_writable, write_atomically};
 pub use compare::{Comparison, Mask, compare_images, compare_masked, read_picture};
 pub use output::{OutputFormat, write_picture};
 pub use transfer::{decode_srgb, encode, quantise};
+pub use unfinished::discard_unfinished;
 
 use crate::layout::FilmPixel;
 use crate::{Error, Result};

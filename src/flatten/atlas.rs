@@ -1,6 +1,7 @@
 //! The distinct images of a scene in one buffer of texels, each with its levels; `shaders/shading/texture.wgsl`
 //! describes the format.
 
+use super::cache::FlattenCache;
 use crate::layout::NONE;
 use crate::scene::{Image, Texels};
 use crate::{Error, Result};
@@ -19,14 +20,18 @@ const HEADER: usize = 4;
 const MAX_LEVELS: usize = 32;
 
 /// The images added so far. An image is the same image only if it is the same allocation.
-#[derive(Default)]
 pub struct Atlas<'a> {
+    cache: &'a FlattenCache,
     texels: Vec<u32>,
     /// The images are borrowed so that no other can come to lie at the same address.
     places: HashMap<*const Image, (&'a Arc<Image>, u32)>,
 }
 
 impl<'a> Atlas<'a> {
+    pub fn new(cache: &'a FlattenCache) -> Self {
+        Atlas { cache, texels: Vec::new(), places: HashMap::new() }
+    }
+
     /// First word of the image in the buffer; an image that was added before is stored once.
     ///
     /// # Errors
@@ -47,21 +52,8 @@ impl<'a> Atlas<'a> {
             )));
         }
         let start = self.texels.len() as u32;
-        self.texels.reserve(words as usize);
-        let format = match &image.texels {
-            Texels::Rgba8(_) => TEXELS_RGBA8,
-            Texels::Rgb32F(_) => TEXELS_RGB9E5,
-        };
-        self.texels.extend([image.width, image.height, sizes.len() as u32, format]);
-        let mut offset = HEADER + sizes.len();
-        for [width, height] in &sizes {
-            self.texels.push(offset as u32);
-            offset += width * height;
-        }
-        match &image.texels {
-            Texels::Rgba8(texels) => self.push_levels(&sizes, texels, |t| t.map(f32::from), pack_rgba8),
-            Texels::Rgb32F(texels) => self.push_levels(&sizes, texels, representable, pack_rgb9e5),
-        }
+        let packed = self.cache.packed(image, |image| pack(image, &sizes, words as usize));
+        self.texels.extend_from_slice(&packed);
         self.places.insert(Arc::as_ptr(image), (image, start));
         Ok(start)
     }
@@ -69,26 +61,46 @@ impl<'a> Atlas<'a> {
     pub fn into_texels(self) -> Vec<u32> {
         self.texels
     }
+}
 
-    fn push_levels<T: Copy + Sync>(
-        &mut self,
-        sizes: &[[usize; 2]],
-        texels: &[T],
-        value: impl Fn(T) -> [f32; 4] + Sync,
-        pack: impl Fn([f32; 4]) -> u32 + Sync + Copy,
-    ) {
-        self.texels.par_extend(texels.par_iter().map(|&texel| pack(value(texel))));
-        // Each level is averaged from the one before, which is not rounded to the packed format.
-        let mut level: Vec<[f32; 4]> = Vec::new();
-        for pair in sizes.windows(2) {
-            let [from, to] = [pair[0], pair[1]];
-            level = if level.is_empty() {
-                shrink(from, to, |index| value(texels[index]))
-            } else {
-                shrink(from, to, |index| level[index])
-            };
-            self.texels.par_extend(level.par_iter().map(|&texel| pack(texel)));
-        }
+/// The image in the buffer's format, which says nothing of where in the buffer it stands.
+fn pack(image: &Image, sizes: &[[usize; 2]], words: usize) -> Vec<u32> {
+    let mut packed = Vec::with_capacity(words);
+    let format = match &image.texels {
+        Texels::Rgba8(_) => TEXELS_RGBA8,
+        Texels::Rgb32F(_) => TEXELS_RGB9E5,
+    };
+    packed.extend([image.width, image.height, sizes.len() as u32, format]);
+    let mut offset = HEADER + sizes.len();
+    for [width, height] in sizes {
+        packed.push(offset as u32);
+        offset += width * height;
+    }
+    match &image.texels {
+        Texels::Rgba8(texels) => push_levels(&mut packed, sizes, texels, |t| t.map(f32::from), pack_rgba8),
+        Texels::Rgb32F(texels) => push_levels(&mut packed, sizes, texels, representable, pack_rgb9e5),
+    }
+    packed
+}
+
+fn push_levels<T: Copy + Sync>(
+    packed: &mut Vec<u32>,
+    sizes: &[[usize; 2]],
+    texels: &[T],
+    value: impl Fn(T) -> [f32; 4] + Sync,
+    pack: impl Fn([f32; 4]) -> u32 + Sync + Copy,
+) {
+    packed.par_extend(texels.par_iter().map(|&texel| pack(value(texel))));
+    // Each level is averaged from the one before, which is not rounded to the packed format.
+    let mut level: Vec<[f32; 4]> = Vec::new();
+    for pair in sizes.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        level = if level.is_empty() {
+            shrink(from, to, |index| value(texels[index]))
+        } else {
+            shrink(from, to, |index| level[index])
+        };
+        packed.par_extend(level.par_iter().map(|&texel| pack(texel)));
     }
 }
 

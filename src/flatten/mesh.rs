@@ -2,17 +2,18 @@
 
 use super::bounds::Bounds;
 use super::bvh::{self, Hierarchy};
+use super::cache::FlattenCache;
 use super::walk::Placement;
 use crate::layout::{TRIANGLE_SMOOTH, Triangle};
 use crate::scene::{Mesh, Shape};
 use crate::{Error, Result};
 use glam::{DVec3, Vec2, Vec3, Vec3A, Vec4};
 use obvhs::aabb::Aabb;
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A mesh ready for the buffers.
+#[derive(Debug)]
 pub struct BuiltMesh {
     /// In the order of the hierarchy's leaves.
     pub triangles: Vec<Triangle>,
@@ -27,7 +28,7 @@ pub struct BuiltMesh {
 
 /// The different meshes of a scene, in the order of their first use.
 pub struct Meshes {
-    pub built: Vec<BuiltMesh>,
+    pub built: Vec<Arc<BuiltMesh>>,
     indices: HashMap<*const Mesh, usize>,
 }
 
@@ -38,8 +39,8 @@ impl Meshes {
     }
 }
 
-/// Builds each mesh of the placements once, in parallel.
-pub fn build_all(placements: &[Placement]) -> Result<Meshes> {
+/// Builds each mesh of the placements that the cache lacks once, in parallel.
+pub fn build_all(placements: &[Placement], cache: &FlattenCache) -> Result<Meshes> {
     let mut indices = HashMap::new();
     let mut meshes = Vec::new();
     for placement in placements {
@@ -50,7 +51,7 @@ pub fn build_all(placements: &[Placement]) -> Result<Meshes> {
             });
         }
     }
-    let built = meshes.par_iter().map(|mesh| build(mesh)).collect::<Result<Vec<_>>>()?;
+    let built = cache.built(&meshes, build)?;
     let total: usize = built.iter().map(|mesh| mesh.triangles.len()).sum();
     if u32::try_from(total).is_err() {
         return Err(Error::Scene(format!("the scene has {total} triangles; at most {} are possible", u32::MAX)));

@@ -4,6 +4,7 @@ mod atlas;
 mod binned;
 mod bounds;
 mod bvh;
+mod cache;
 mod features;
 mod frame;
 mod instances;
@@ -15,6 +16,7 @@ mod walk;
 mod work;
 
 pub use bvh::TRAVERSAL_STACK;
+pub use cache::{FlattenCache, FlattenCounts};
 pub use features::FeatureSet;
 pub use mesh::encode_octahedral;
 pub use work::{MAX_DEEP_LIGHT_SAMPLES, MAX_GLOSSY_SAMPLES, MAX_LIGHT_SAMPLES, WorkPlan, plan_work};
@@ -69,11 +71,20 @@ pub struct Statistics {
 /// leaves the range of f32, where a mesh refers to vertices that it lacks, where images are too large, or where the
 /// camera is degenerate.
 pub fn flatten(scene: &Scene) -> Result<SceneBuffers> {
+    flatten_with(scene, &FlattenCache::none())
+}
+
+/// As [`flatten`], which gives the same buffers; meshes and images that the cache knows are not built again.
+///
+/// # Errors
+/// As [`flatten`].
+pub fn flatten_with(scene: &Scene, cache: &FlattenCache) -> Result<SceneBuffers> {
     let start = Instant::now();
     let scene = &*lights::with_visible_lights(scene);
     let placements = walk::placements(scene)?;
-    let meshes = mesh::build_all(&placements)?;
-    let mut atlas = atlas::Atlas::default();
+    cache.begin_scene();
+    let meshes = mesh::build_all(&placements, cache)?;
+    let mut atlas = atlas::Atlas::new(cache);
     let materials::MaterialsInUse { packed: mut materials, of_placement } =
         materials::materials_in_use(scene, &placements, &mut atlas)?;
     let mists = mist::Mists::new(&mut materials, scene.camera.eye);

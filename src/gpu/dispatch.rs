@@ -7,11 +7,12 @@ use super::readback;
 use crate::film::Film;
 use crate::flatten::SceneBuffers;
 use crate::layout::{self, Dispatch, FilmPixel, Frame, Status};
-use crate::renderer::Tally;
+use crate::renderer::{PrepareCounts, Tally};
 use crate::{Error, Result};
 use glam::UVec2;
 use std::num::NonZeroU64;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Edge of a block, pixels; a workgroup has one invocation for each pixel of its block.
 pub(super) const BLOCK_EDGE: u32 = 8;
@@ -45,8 +46,14 @@ struct Counts {
 }
 
 impl Session {
-    /// Uploads the scene.
-    pub fn new(device: &Device, pipeline: Pipeline, scene: &SceneBuffers) -> Result<Self> {
+    /// Uploads the scene, and takes over from the session before what can be used again.
+    pub fn new(
+        device: &Device,
+        pipeline: Pipeline,
+        scene: Arc<SceneBuffers>,
+        before: Option<Session>,
+        prepared: &mut PrepareCounts,
+    ) -> Result<Self> {
         use wgpu::BufferUsages as Usage;
         let counts = Counts {
             image_size: scene.frame.image_size,
@@ -54,13 +61,14 @@ impl Session {
             lights: scene.lights.len(),
             nodes: scene.nodes.len(),
         };
-        let scene = SceneStorage::upload(device, scene)?;
+        let (before, film) = before.map(|session| (session.scene, session.film)).unzip();
+        let scene = SceneStorage::upload(device, scene, before, prepared)?;
         let status_size = size_of::<Status>() as u64;
         let frame = create(device, "frame", size_of::<Frame>() as u64, Usage::UNIFORM | Usage::COPY_DST)?;
         let slots = create_slots(device, 1)?;
         let status = create(device, "status", status_size, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC)?;
         let status_staging = create(device, "status readback", status_size, Usage::MAP_READ | Usage::COPY_DST)?;
-        let film = create_film(device, size_of::<FilmPixel>() as u64)?;
+        let film = film.map_or_else(|| create_film(device, size_of::<FilmPixel>() as u64), Ok)?;
         let bind_group = bind(device, &pipeline, &scene, [&frame, &slots, &film, &status])?;
         Ok(Session {
             device: device.clone(),

@@ -19,7 +19,8 @@ pub(super) mod binding {
     pub const STATUS: u32 = 9;
 }
 
-/// A compiled kernel and the layout of its bindings.
+/// A compiled kernel and the layout of its bindings; clones are the same kernel.
+#[derive(Clone)]
 pub(super) struct Pipeline {
     pub pipeline: wgpu::ComputePipeline,
     pub bind_group_layout: wgpu::BindGroupLayout,

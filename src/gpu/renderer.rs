@@ -4,11 +4,12 @@ use super::device::Device;
 use super::dispatch::{BLOCK_EDGE, Session};
 use super::pipeline::Pipeline;
 use crate::film::Film;
-use crate::flatten::SceneBuffers;
+use crate::flatten::{FeatureSet, SceneBuffers};
 use crate::layout::{Dispatch, FilmPixel, Frame};
-use crate::renderer::{Renderer, Tally};
+use crate::renderer::{PrepareCounts, Renderer, Tally};
 use crate::shader::{Program, RENDER_ENTRY_POINT};
 use crate::{Error, Result};
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
@@ -27,8 +28,11 @@ pub struct GpuRenderer {
     options: GpuOptions,
     program: Program,
     entry_point: String,
+    /// By what they are specialised to; they differ in nothing else.
+    pipelines: HashMap<FeatureSet, Pipeline>,
     session: Option<Session>,
     warmup_seconds: f64,
+    counts: PrepareCounts,
 }
 
 impl GpuRenderer {
@@ -44,7 +48,16 @@ impl GpuRenderer {
     /// in one dimension, and to do nothing where `workgroup_id.x >= dispatch.block_count`.
     pub fn with_program(device: Device, options: GpuOptions, program: Program, entry_point: &str) -> Self {
         let entry_point = entry_point.to_owned();
-        GpuRenderer { device, options, program, entry_point, session: None, warmup_seconds: 0.0 }
+        GpuRenderer {
+            device,
+            options,
+            program,
+            entry_point,
+            pipelines: HashMap::new(),
+            session: None,
+            warmup_seconds: 0.0,
+            counts: PrepareCounts::default(),
+        }
     }
 
     pub fn device(&self) -> &Device {
@@ -54,6 +67,19 @@ impl GpuRenderer {
     /// Seconds that the last `prepare` spent on compiling the kernel and its first dispatch.
     pub fn warmup_seconds(&self) -> f64 {
         self.warmup_seconds
+    }
+
+    /// The kernel for these features; whether it was compiled just now.
+    fn pipeline(&mut self, features: FeatureSet) -> Result<(Pipeline, bool)> {
+        if let Some(pipeline) = self.pipelines.get(&features) {
+            self.counts.pipelines_reused += 1;
+            return Ok((pipeline.clone(), false));
+        }
+        let (source, overrides) = (self.program.source(), features.overrides());
+        let pipeline = Pipeline::new(&self.device, source, &self.entry_point, &overrides, self.options.checked)?;
+        self.pipelines.insert(features, pipeline.clone());
+        self.counts.pipelines_compiled += 1;
+        Ok((pipeline, true))
     }
 
     fn session(&mut self) -> Result<&mut Session> {
@@ -66,19 +92,23 @@ impl Renderer for GpuRenderer {
     /// [`Error::Limit`] for a scene that the device cannot hold, [`Error::Shader`], and [`Error::Device`] where the
     /// device runs out of memory or is lost, as from every other call.
     fn prepare(&mut self, scene: Arc<SceneBuffers>) -> Result<()> {
-        // Frees the memory of the scene before.
-        self.session = None;
         let start = Instant::now();
-        let source = self.program.source();
-        let overrides = scene.features.overrides();
-        let pipeline = Pipeline::new(&self.device, source, &self.entry_point, &overrides, self.options.checked)?;
+        let (pipeline, is_new) = self.pipeline(scene.features)?;
         let compiled = start.elapsed();
-        let mut session = Session::new(&self.device, pipeline, &scene)?;
+        let before = self.session.take();
+        let frame = scene.frame;
+        let mut session = Session::new(&self.device, pipeline, scene, before, &mut self.counts)?;
         let start = Instant::now();
-        session.warm_up(&scene.frame)?;
+        if is_new {
+            session.warm_up(&frame)?;
+        }
         self.warmup_seconds = (compiled + start.elapsed()).as_secs_f64();
         self.session = Some(session);
         Ok(())
+    }
+
+    fn prepare_counts(&self) -> PrepareCounts {
+        self.counts
     }
 
     fn max_band_pixels(&self) -> u64 {

@@ -3,6 +3,7 @@
 //! World space is right-handed; lengths are in world units, angles in degrees, colours linear.
 
 mod camera;
+mod frame_rate;
 mod geometry;
 mod graph;
 mod image;
@@ -15,6 +16,7 @@ mod polygons;
 mod smooth;
 
 pub use camera::Camera;
+pub use frame_rate::FrameRate;
 pub use geometry::{Geometry, Shape};
 pub use graph::{MaterialId, Node, NodeId, SceneGraph};
 pub use image::{Image, Texels};

@@ -5,11 +5,13 @@
 //! `gr.*` function and the instruction hook raise it again.
 
 use super::diagnostics;
+use super::library::Library;
 use crate::error::Error;
 use mlua::debug::Debug;
 use mlua::{HookTriggers, Lua, VmState};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// Instructions between two looks at the count.
 const HOOK_INTERVAL: u32 = 1000;
@@ -33,10 +35,12 @@ pub(super) struct Guard {
     stopped: Cell<bool>,
     /// Where the script was when its memory last looked scarce.
     place: RefCell<Option<String>>,
+    /// Says whether the user wants no more of it.
+    library: Arc<Library>,
 }
 
 impl Guard {
-    pub fn new(memory_limit: usize, instruction_limit: u64) -> Self {
+    pub fn new(memory_limit: usize, instruction_limit: u64, library: Arc<Library>) -> Self {
         Guard {
             memory_limit,
             instruction_limit,
@@ -45,6 +49,7 @@ impl Guard {
             reason: RefCell::new(None),
             stopped: Cell::new(false),
             place: RefCell::new(None),
+            library,
         }
     }
 
@@ -58,6 +63,9 @@ impl Guard {
 
     fn count(&self, lua: &Lua, debug: &Debug) -> mlua::Result<()> {
         self.check()?;
+        if self.library.is_stopped() {
+            return Err(self.stop(lua, Error::Interrupted));
+        }
         self.charge_instructions(lua, u64::from(HOOK_INTERVAL))?;
         if lua.used_memory() > self.memory_limit / 4 {
             *self.place.borrow_mut() = diagnostics::place_of(debug);

@@ -13,6 +13,7 @@ mod diagnostics;
 mod fields;
 mod given;
 mod guard;
+mod library;
 mod modules;
 mod sandbox;
 mod search;
@@ -20,20 +21,26 @@ mod sequences;
 mod state;
 
 pub use conventions::{ConventionOverrides, TransformOrder, ViewConvention};
+pub use library::{Library, LibraryCounts};
 
 use crate::error::{Error, Result};
-use crate::scene::Scene;
+use crate::scene::{FrameRate, Scene};
 use guard::Guard;
 use state::State;
 use std::cell::RefCell;
 use std::path::Path;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// What a script is told, and how much it may use.
 #[derive(Clone, Debug)]
 pub struct ScriptOptions {
     /// What `gr.frame_cmd()` returns.
     pub frame: u32,
+    /// What `gr.frames()` returns: the frames of the whole animation.
+    pub frames: u32,
+    /// Turns frames into the seconds of `gr.time()`.
+    pub rate: FrameRate,
     /// Seeds `math.random`, and becomes the seed of the scenes.
     pub seed: u32,
     /// Conventions that win over those of the script.
@@ -43,6 +50,8 @@ pub struct ScriptOptions {
     /// Lua virtual machine instructions that the script may execute; calls of `gr` functions and caught errors count
     /// as what they take. A single call of a Lua library function counts as one, however long it takes.
     pub instruction_limit: u64,
+    /// Files that other runs with this library have read are not read again.
+    pub library: Arc<Library>,
 }
 
 impl ScriptOptions {
@@ -56,10 +65,13 @@ impl Default for ScriptOptions {
     fn default() -> Self {
         ScriptOptions {
             frame: 0,
+            frames: 1,
+            rate: FrameRate::default(),
             seed: 0,
             conventions: ConventionOverrides::default(),
             memory_limit: Self::DEFAULT_MEMORY_LIMIT,
             instruction_limit: Self::DEFAULT_INSTRUCTION_LIMIT,
+            library: Arc::default(),
         }
     }
 }
@@ -69,7 +81,7 @@ impl Default for ScriptOptions {
 pub struct ScriptSummary {
     /// Calls of `gr.render` that went well.
     pub pictures: u32,
-    /// What was said through `log::warn!` while it ran, in order.
+    /// What it was warned of, in order. Through `log::warn!` each goes once for a [`Library`].
     pub warnings: Vec<String>,
 }
 
@@ -79,14 +91,14 @@ pub struct ScriptSummary {
 ///
 /// # Errors
 /// [`Error::File`] if the script cannot be read; [`Error::Script`] if it fails or passes a limit. An error of `render`
-/// ends the script, even inside `pcall`, and is returned as it is.
+/// ends the script, even inside `pcall`, and is returned as it is. [`Error::Interrupted`] after [`Library::stop`].
 pub fn run_scene(
     path: &Path,
     options: &ScriptOptions,
     render: &mut dyn FnMut(Scene) -> Result<()>,
 ) -> Result<ScriptSummary> {
     let source = std::fs::read(path).map_err(|source| Error::file("read the scene", path, source))?;
-    let guard = Rc::new(Guard::new(options.memory_limit, options.instruction_limit));
+    let guard = Rc::new(Guard::new(options.memory_limit, options.instruction_limit, Arc::clone(&options.library)));
     let state = Rc::new(RefCell::new(State::new(path, options)));
     let script = sandbox::Script { name: path.display().to_string(), source: &source };
     let outcome = sandbox::run(&script, &guard, &state, render);

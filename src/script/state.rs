@@ -1,9 +1,12 @@
 //! What a running script has built so far.
 
 use super::conventions::{ConventionSources, TransformOrder};
+use super::library::Library;
 use super::search::SearchPath;
 use super::{ScriptOptions, diagnostics};
-use crate::scene::{Background, Bump, Geometry, Image, Material, MaterialId, Mesh, Node, NodeId, SceneGraph};
+use crate::scene::{
+    Background, Bump, FrameRate, Geometry, Image, Material, MaterialId, Mesh, Node, NodeId, SceneGraph,
+};
 use glam::DAffine3;
 use mlua::Lua;
 use std::collections::{HashMap, HashSet};
@@ -29,7 +32,12 @@ pub(super) struct State {
     /// Names of the files that were compiled, as messages show them.
     pub chunks: HashSet<String>,
     pub frame: u32,
+    pub frames: u32,
+    pub rate: FrameRate,
     pub seed: u32,
+    pub library: Arc<Library>,
+    /// The number of this run in the library.
+    pub run: u64,
     pub pictures: u32,
     pub warnings: Vec<String>,
     /// Functions that were called with more arguments than they know.
@@ -72,7 +80,11 @@ impl State {
             background: Background::default(),
             chunks: HashSet::new(),
             frame: options.frame,
+            frames: options.frames,
+            rate: options.rate,
             seed: options.seed,
+            run: options.library.begin_run(),
+            library: Arc::clone(&options.library),
             pictures: 0,
             warnings: Vec::new(),
             surplus: HashSet::new(),
@@ -175,7 +187,9 @@ impl State {
     pub fn warn(&mut self, lua: &Lua, message: &str) {
         let place = diagnostics::place(lua).map_or_else(String::new, |place| format!("{place}: "));
         let warning = format!("{place}{message}");
-        log::warn!("{warning}");
+        if self.library.first_time(&warning) {
+            log::warn!("{warning}");
+        }
         self.warnings.push(warning);
     }
 

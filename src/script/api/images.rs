@@ -32,7 +32,8 @@ pub(in crate::script) fn load(given: &Given, name: &str) -> Outcome<Arc<Image>> 
     if let Some(image) = call.state().images.get(&real) {
         return Ok(Arc::clone(image));
     }
-    let image = Arc::new(load_image(&path).map_err(|error| given.fail(error.to_string()))?);
+    let (library, run) = (Arc::clone(&call.state().library), call.state().run);
+    let image = library.images.get(&real, run, || load_image(&path)).map_err(|error| given.fail(error.to_string()))?;
     call.context.guard.charge_memory(call.lua, image.texels.bytes())?;
     call.state_mut().images.insert(real, Arc::clone(&image));
     Ok(image)

@@ -67,7 +67,8 @@ fn from_file(call: &Call, given: &Given) -> Outcome<Arc<Mesh>> {
     if let Some(mesh) = call.state().meshes.get(&real) {
         return Ok(Arc::clone(mesh));
     }
-    let mesh = Arc::new(load_obj(&path).map_err(|error| given.fail(error.to_string()))?);
+    let (library, run) = (Arc::clone(&call.state().library), call.state().run);
+    let mesh = library.meshes.get(&real, run, || load_obj(&path)).map_err(|error| given.fail(error.to_string()))?;
     charge(call, &mesh)?;
     call.state_mut().meshes.insert(real, Arc::clone(&mesh));
     Ok(mesh)

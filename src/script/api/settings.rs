@@ -4,12 +4,28 @@ use super::Function;
 use crate::script::arguments::{Call, Failure, Outcome};
 use mlua::Value;
 
-pub(super) const FUNCTIONS: &[Function] =
-    &[("gr.frame_cmd", 0, frame), ("gr.frame", 0, frame), ("gr.conventions", 1, conventions)];
+pub(super) const FUNCTIONS: &[Function] = &[
+    ("gr.frame_cmd", 0, frame),
+    ("gr.frame", 0, frame),
+    ("gr.frames", 0, frames),
+    ("gr.time", 0, time),
+    ("gr.conventions", 1, conventions),
+];
 
 /// `gr.frame_cmd()` or `gr.frame()`: the number of the frame that the command line asks for, 0 in a plain run.
 fn frame(call: &Call) -> Outcome<Value> {
     Ok(Value::Integer(i64::from(call.state().frame)))
+}
+
+/// `gr.frames()`: the number of frames of the whole animation, 1 in a plain run.
+fn frames(call: &Call) -> Outcome<Value> {
+    Ok(Value::Integer(i64::from(call.state().frames)))
+}
+
+/// `gr.time()`: seconds from frame 0 to this one.
+fn time(call: &Call) -> Outcome<Value> {
+    let state = call.state();
+    Ok(Value::Number(state.rate.seconds_at(state.frame)))
 }
 
 /// `gr.conventions{view=, transforms=, specular=, sample=}`, any of them. Transforms change for the whole scene, the
