@@ -42,11 +42,8 @@ impl Plan {
         let total_frames = arguments.total_frames.unwrap_or(count);
         let mut plan =
             Plan { frames: all, skipped: 0, total_frames, destination, is_batch: arguments.frames.is_some() };
-        let (numbered, clip) = match plan.destination {
-            Destination::Numbered(_) => (true, false),
-            Destination::Clip { .. } => (false, true),
-            _ => (false, false),
-        };
+        let numbered = matches!(plan.destination, Destination::Numbered(_));
+        let clip = matches!(plan.destination, Destination::Clip { .. });
         for (refused, option) in
             [(arguments.resume && !numbered, "--resume"), (arguments.keep_going && clip, "--keep-going")]
         {
@@ -66,11 +63,12 @@ impl Plan {
 
     /// Whether an interrupt lets the frame in hand be finished: what came before it is there to stay.
     pub fn finishes_frames(&self) -> bool {
-        let to_files = !matches!(
-            self.destination,
-            Destination::Clip { format: ClipFormat::Gif | ClipFormat::Apng | ClipFormat::Mp4, .. }
-        );
-        self.is_batch && to_files
+        self.is_batch && !self.is_clip_file()
+    }
+
+    /// Whether the frames go into one file, which is there when all of them are.
+    pub fn is_clip_file(&self) -> bool {
+        matches!(&self.destination, Destination::Clip { format, .. } if *format != ClipFormat::Y4m)
     }
 }
 

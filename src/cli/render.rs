@@ -66,6 +66,9 @@ pub fn run(arguments: &RenderArguments, plan: &Plan, console: &Console) -> Resul
     }
     let prepared = studio.renderer.as_ref().map_or_else(PrepareCounts::default, |renderer| renderer.prepare_counts());
     let reuse = Reuse::new(library.counts(), cache.counts(), prepared);
+    if plan.is_batch {
+        log::info!("{reuse}");
+    }
     conclude(arguments, plan, delivery, outcome, &reuse, started)
 }
 
@@ -183,22 +186,11 @@ fn conclude(
     started: Instant,
 ) -> Result<()> {
     let (console, seconds) = (delivery.console, started.elapsed().as_secs_f64());
-    if plan.is_batch {
-        log::info!("{reuse}");
-        if let Some(writer) = &mut delivery.report {
-            writer.write(&BatchReport::new(
-                plan,
-                &delivery.failures,
-                delivery.frames,
-                seconds,
-                (delivery.render_seconds, delivery.warmup_seconds),
-                reuse,
-            ))?;
-        }
+    if outcome.is_err() && plan.is_clip_file() {
+        // They went with the clip.
+        delivery.frames = 0;
     }
-    if let Some(writer) = delivery.report.take() {
-        writer.finish()?;
-    }
+    let reported = report_batch(plan, &mut delivery, seconds, reuse);
     match outcome {
         Ok(()) => {}
         Err(Error::Interrupted) => {
@@ -213,6 +205,7 @@ fn conclude(
             });
         }
     }
+    reported?;
     let skipped = if plan.skipped > 0 { format!(", and {} were there", plan.skipped) } else { String::new() };
     if plan.is_batch {
         console.say(&format!(
@@ -227,11 +220,20 @@ fn conclude(
     Ok(())
 }
 
+/// Completes the report: of a batch by the object about the whole.
+fn report_batch(plan: &Plan, delivery: &mut Delivery, seconds: f64, reuse: &Reuse) -> Result<()> {
+    let Some(mut writer) = delivery.report.take() else { return Ok(()) };
+    if plan.is_batch {
+        let sums = (delivery.render_seconds, delivery.warmup_seconds);
+        writer.write(&BatchReport::new(plan, &delivery.failures, delivery.frames, seconds, sums, reuse))?;
+    }
+    writer.finish()
+}
+
 fn say_interrupted(plan: &Plan, delivery: &Delivery) {
-    let is_clip_file = matches!(plan.destination, Destination::Clip { .. }) && !plan.finishes_frames();
     let message = match (&plan.destination, delivery.pictures) {
         (_, 0) => Error::Interrupted.to_string(),
-        _ if is_clip_file => Error::Interrupted.to_string(),
+        _ if plan.is_clip_file() => Error::Interrupted.to_string(),
         (Destination::Numbered(_), _) => {
             format!("interrupted; frames written: {}; run again with --resume for the others", delivery.frames)
         }

@@ -93,9 +93,10 @@ fn stages_overlap_in_order_and_hold_few_scenes() {
         let diary = Diary::default();
         let prepare = |frame: u32, _: u32, _: &mut Scene| {
             let [_, painted, encoded] = diary.begin(PREPARE, frame);
-            assert!(frame <= painted + jobs as u32, "frame {frame} is prepared while {painted} is rendered");
-            // One picture waits for the encoder, and the renderer has one in hand.
-            assert!(painted <= encoded + 3, "frame {painted} is rendered while {encoded} is encoded");
+            // Each thread has one frame in hand; the renderer may have taken one more that it has not begun.
+            assert!(frame <= painted + 1 + jobs as u32, "frame {frame} is prepared while {painted} is rendered");
+            // The renderer goes on when the encoder has taken the frame before, begun or not.
+            assert!(painted <= encoded + 2, "frame {painted} is rendered while {encoded} is encoded");
             Ok(())
         };
         let mut encoder = Encoder(&diary, Vec::new());
