@@ -3,15 +3,15 @@
 -- near the viewer and the cliff further off; hundreds of trees, each with its own size and turn, and thousands of tufts
 -- of grass; ivy, ferns and moss where the rock has ledges; three swimming rings, one of them a doughnut, that lie in the
 -- water as the waves tilt them; the haze between the hills; the lens, which is focused on the fall.
--- 1280x720, 36 camera samples a pixel: about five minutes on two CPU cores, two seconds of them for the script.
+-- 1280x720, 40 camera samples a pixel: about five minutes on two CPU cores, two seconds of them for the script.
 -- FRAME n is n / 25 seconds later: the waves run, the water falls, the rings bob.
 
 local quality = 'full' -- or 'preview': fewer plants, 640x360, 4 samples: ten seconds or so
 
 local levels = {
-  full = { size = { 1280, 720 }, samples = 36, grid = 0.8, grass = 12000, trees = 1, strands = 1800, foam = 2000,
+  full = { size = { 1280, 720 }, samples = 40, grid = 0.8, grass = 12000, trees = 1, strands = 2400, foam = 2000,
     drops = 700, cell = 0.11 },
-  preview = { size = { 640, 360 }, samples = 4, grid = 0.6, grass = 6000, trees = 0.6, strands = 1600, foam = 1000,
+  preview = { size = { 640, 360 }, samples = 4, grid = 0.6, grass = 6000, trees = 0.6, strands = 1800, foam = 1000,
     drops = 300, cell = 0.14 },
 }
 local level = levels[quality]
@@ -104,6 +104,12 @@ end }) do
   place(scene, stones[math.random(3)], p[1], height_at(p[1], p[2]) + 0.2 * size, p[2], size, between(0, 360))
 end
 
+for _ = 1, 90 do
+  local x, size = between(0, 13), 0.10 + 0.35 * math.random() ^ 2
+  place(scene, stones[math.random(3)], x, between(-0.05, 0.1), terrain.face(x, 0.1) + between(-0.1, 0.4), size,
+    between(0, 360))
+end
+
 --------------------------------------------------------------------------------------------------------------- water
 
 math.randomseed(2)
@@ -131,15 +137,15 @@ boulder(4, -2.45, 0.9, -7.1, 0.85, 170)
 boulder(2, -4.9, 0.5, -6.9, 0.9, 250)
 local side = { x = 1.3, width = 0.42, lip_y = 6.4 }
 side.lip_z = terrain.face(side.x, side.lip_y) + 0.25
-local whites = { { 0.13, 0.17, 0.19 }, { 0.24, 0.28, 0.30 }, { 0.38, 0.40, 0.41 } }
+local whites = { { 0.16, 0.20, 0.22 }, { 0.26, 0.295, 0.31 }, { 0.37, 0.39, 0.40 } }
 -- Whole and dark where it bends over the edge, whiter as it breaks up.
 local sheets = {
   glass = gr.material { diffuse = { 0.06, 0.095, 0.09 }, specular = { 0.5, 0.5, 0.5 }, shininess = 60,
     reflection = 0.25, glossy = 0.1 },
-  clear = gr.material { diffuse = { 0.055, 0.085, 0.095 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 },
-  torn = gr.material { diffuse = { 0.12, 0.155, 0.17 }, specular = { 0.2, 0.2, 0.2 }, shininess = 20 },
+  clear = gr.material { diffuse = { 0.085, 0.12, 0.13 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 },
+  torn = gr.material { diffuse = { 0.19, 0.225, 0.24 }, specular = { 0.2, 0.2, 0.2 }, shininess = 20 },
 }
-for _, falls in ipairs { { left, level.strands, 0.034 }, { right, level.strands // 3, 0.028 }, { side, 110, 0.016 } } do
+for _, falls in ipairs { { left, level.strands, 0.021 }, { right, level.strands // 3, 0.019 }, { side, 160, 0.012 } } do
   local f = falls[1]
   water.sheet(f, 70, 70, time, 0.9):split('sheet', sheets, function(_, _, _, x, y)
     local broken = (f.lip_y - y) / f.lip_y + 0.22 * gr.noise(4.5 * x, 0.5 * y, 0.5)
@@ -155,9 +161,23 @@ end
 local white = gr.material { diffuse = { 0.40, 0.43, 0.44 }, specular = { 0.4, 0.4, 0.4 }, shininess = 40 }
 local drop = gr.sphere('drop')
 drop:set_material(white)
-local function bubble(x, y, z, radius) place(scene, drop, x, y, z, radius) end
-water.drops(level.drops, time, bubble)
-water.foam(level.foam, time, bubble)
+local function flying(x, y, z, radius) place(scene, drop, x, y, z, radius) end
+local function floating(x, y, z, radius) place(scene, drop, x, y, z, radius, 0, 0, 0, 0.4) end
+water.drops(level.drops, time, flying)
+water.foam(level.foam, time, floating)
+-- Where the small fall ends on the rock: stones, and froth between them.
+for _, after in ipairs { 0.3, 0.8 } do
+  local x, y, z = water.landing(side, after, terrain.face)
+  for _ = 1, 14 do
+    place(scene, stones[math.random(3)], x + between(-0.7, 0.7), y + between(-0.25, 0.05), z + between(0, 0.5),
+      between(0.08, 0.26), between(0, 360))
+  end
+  for _ = 1, 260 do
+    local out = math.random()
+    flying(x + between(-0.35, 0.35) * (1 + out), y + 0.3 * (1 - out) * math.random(), z + 0.5 * out,
+      between(0.005, 0.018))
+  end
+end
 
 -- Mist: spray about the foot, a thinner cloud above it, and haze between the hills.
 -- A ray may be in four mists at a time: these three, and the water's.
@@ -168,9 +188,9 @@ local function cloud(x, y, z, sx, sy, sz, density, colour)
   ball:translate(x, y, z)
   scene:add_child(ball)
 end
-cloud(fall.x, 0.1, fall.foot_z + 0.2, 2.8, 1.2, 1.2, 0.75)
-cloud(fall.x + 0.3, 0.5, fall.foot_z + 0.6, 3.5, 2.5, 1.9, 0.20)
-cloud(fall.x + 1.0, 0.8, fall.foot_z + 1.2, 6.5, 3.6, 3.2, 0.035)
+cloud(fall.x, 0.1, fall.foot_z + 0.2, 3.1, 1.1, 1.2, 0.65)
+cloud(fall.x + 0.3, 0.3, fall.foot_z + 0.6, 4.2, 2.2, 2.0, 0.10)
+cloud(fall.x + 0.8, 0.6, fall.foot_z + 1.0, 6.2, 3.4, 3.0, 0.055)
 local haze = gr.cube('haze')
 haze:set_material(gr.material { diffuse = { 0.20, 0.215, 0.24 }, density = 0.0045 })
 haze:translate(-0.5, 0, -1)

@@ -65,9 +65,9 @@ local function course(fall, u)
   end
 end
 
---- Seconds from the edge to the pool.
+--- Seconds from the edge to the pool, from where the edge is highest.
 local function fall_time(fall)
-  return math.sqrt(fall.lip_y / 4.9)
+  return math.sqrt((fall.lip_y + 0.25) / 4.9)
 end
 
 --- The body of the fall: a sheet over its width with folds that run down.
@@ -121,7 +121,7 @@ function water.strands(fall, count, kinds, thickness, time)
         local ends = math.max(0, math.sin(math.pi * k / pieces)) ^ 0.6
         local whole = 0.25 + 0.75 * step(0.02, 0.30, q + whole_until)
         local half = thick * ends * whole * (1 + 0.6 * noise(wobble, 1.7 * y, 4.5)) * (1 - 0.3 * q)
-        x = x + (0.02 + 0.22 * q) * noise(wobble, 1.1 * y, 1.5)
+        x = x + (0.02 + 0.13 * q) * noise(wobble, 1.1 * y, 1.5)
         z = z + forward * (0.10 + q)
         -- A little round across, and turned up where it goes over the edge.
         local over = t < 0.15 and 1 or 0.4
@@ -135,6 +135,18 @@ function water.strands(fall, count, kinds, thickness, time)
     end
   end
   return meshes
+end
+
+--- Where the middle of the fall, `t` seconds after the edge or later, meets the rock whose depth at (x, y) is
+--- `face(x, y)`.
+function water.landing(fall, t, face)
+  local at = course(fall, 0)
+  local x, y, z = at(t)
+  while y > 0 and face(x, y) < z do
+    t = t + 0.01
+    x, y, z = at(t)
+  end
+  return x, y, z
 end
 
 --- Calls `put(x, y, z, radius)` for drops thrown up about the foot.
@@ -162,12 +174,12 @@ function water.foam(count, time, put)
     local u, out = between(-1.15, 1.15), between(-0.25, 0.8)
     local x, z = fall.x + 0.56 * fall.width * u, fall.foot_z + out
     local boil = 0.30 * math.exp(-(out / 0.4) ^ 2) * (0.7 + 0.6 * noise(1.5 * x, 2.2 * time, 2 * z))
-    put(x, water.wave(x, z, time) + boil * math.random(), z, between(0.012, 0.045))
+    put(x, water.wave(x, z, time) + boil * math.random(), z, between(0.010, 0.035))
   end
   for _ = 1, count do
     local r, angle = 0.35 + 4.8 * between(0, 1) ^ 2.0, between(-0.35, math.pi + 0.35)
     local x, z = fall.x + (1.2 + r) * math.cos(angle) * 1.15, fall.foot_z + (0.15 + r) * math.sin(angle) - 0.2
-    local radius = between(0.015, 0.055) * math.exp(-r / 6)
+    local radius = between(0.010, 0.040) * math.exp(-r / 4)
     local streak = noise(1.3 * x, 1.3 * z, 7.5) + 0.55 * noise(3.7 * x, 3.7 * z, 1.5)
     if streak > -0.25 + 0.16 * r and valley.inside_pool(x, z) > 0.1 then
       put(x, water.wave(x, z, time) + 0.1 * radius, z, radius)
