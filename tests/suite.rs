@@ -11,6 +11,7 @@ mod cli;
 mod compare;
 mod detail;
 mod devices;
+mod farm;
 mod film;
 mod flatten;
 mod flatten_tables;
