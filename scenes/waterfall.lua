@@ -3,7 +3,7 @@
 -- near the viewer and the cliff further off; hundreds of trees, each with its own size and turn, and thousands of tufts
 -- of grass; ivy, ferns and moss where the rock has ledges; three swimming rings, one of them a doughnut, that lie in the
 -- water as the waves tilt them; the haze between the hills; the lens, which is focused on the fall.
--- 1280x720, 40 camera samples a pixel: about five minutes on two CPU cores, two seconds of them for the script.
+-- 1280x720, 40 camera samples a pixel: about six minutes on two CPU cores, two seconds of them for the script.
 -- FRAME n is n / 25 seconds later: the waves run, the water falls, the rings bob.
 
 local quality = 'full' -- or 'preview': fewer plants, 640x360, 4 samples: ten seconds or so
