@@ -60,6 +60,12 @@ cliff:split('cliff', { rock = rock, wet = wet_rock, moss = moss }, function(_, n
   return 'rock'
 end, scene)
 
+-- Beyond the edges of what is modelled, for the rays that get there by way of the water.
+local land = gr.plane('land')
+land:set_material(far_green)
+land:translate(0, -4, 0)
+scene:add_child(land)
+
 -- Boulders: about the foot of the fall, along the shore, under the cliff.
 local boulders = {}
 for k = 1, 5 do

@@ -96,7 +96,8 @@ function props.jetty(count, tones, post, metal, glow)
       tip:translate(x, tall + 0.085, -0.22 * i)
     end
   end
-  local lantern = gr.node('lantern')
+  -- Put down a little askew.
+  local lantern = gr.joint('lantern', { 0, 0, 0 }, { -180, 28, 180 })
   for k = 0, 3 do
     local bar = put(lantern, gr.cylinder('bar'), metal)
     bar:scale(0.008, 0.12, 0.008)
