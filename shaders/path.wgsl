@@ -137,6 +137,9 @@ struct Flight {
     leg_origin: vec3<f32>,
     // From leg_origin to the surface.
     left: f32,
+    // The boundary crossed last, twice the number of its mist and 1 where the ray went in, and the step across it.
+    boundary: u32,
+    step: f32,
 };
 
 // Random numbers of the current leg: the free flight, and which mist scatters.
@@ -213,7 +216,7 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
         }
         var hit = met;
         if (HAS_MIST && !flying) {
-            flight = Flight(true, met, 0u, ray.start, select(met.t, T_INFINITY, met.t < 0.0));
+            flight = Flight(true, met, 0u, ray.start, select(met.t, T_INFINITY, met.t < 0.0), 0u, 0.0);
             continue;
         }
         let crossing = flying && met.t > 0.0;
@@ -248,10 +251,13 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
             }
             flight.going = scatterer == 0u;
             if (flight.going) {
-                let step = materials[surface.material].mist_step;
                 ray.mists = mist_cross(ray.mists, number, surface.entering);
-                flight.leg_origin = beyond_boundary(surface.point, origin, direction, met.t, step);
-                flight.left -= met.t + step;
+                // A grazing ray stays so near to the boundary that it meets it again and again: its steps double.
+                let boundary = 2u * number + u32(surface.entering);
+                flight.step = select(materials[surface.material].mist_step, 2.0 * flight.step, boundary == flight.boundary);
+                flight.boundary = boundary;
+                flight.leg_origin = beyond_boundary(surface.point, origin, direction, met.t, flight.step);
+                flight.left -= met.t + flight.step;
                 flight.leg++;
                 if (flight.leg > MIST_CROSSINGS) {
                     tally.flags |= STATUS_MIST_CROSSINGS;

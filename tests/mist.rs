@@ -329,3 +329,25 @@ fn too_many_boundaries_of_mist_end_the_picture_with_advice() {
         outcome(MIST_CROSSINGS / 2 - 8).unwrap_or_else(|error| panic!("{device:?}: {error}"));
     }
 }
+
+#[test]
+fn grazing_rays_leave_boundaries_behind() {
+    let stage = || {
+        let mut stage = Stage::new(160, 90);
+        stage.scene.camera.eye = DVec3::new(0.0, 2.0, 9.0);
+        stage.scene.camera.forward = DVec3::new(0.0, -2.0, -9.0);
+        stage.scene.camera.fov = 40.0;
+        stage.scene.sampling.camera = 16;
+        for i in 1..9 {
+            let i = f64::from(i);
+            let place = DAffine3::from_translation(DVec3::new(0.1 * i, 0.0, -0.05 * i));
+            stage.add(Shape::Sphere, place * DAffine3::from_scale(DVec3::splat(2.0 + 0.3 * i)), mist(0.05, BLACK));
+        }
+        stage.finish()
+    };
+    for device in &BOTH {
+        // Without doubled steps, rays that touch a ball end with an error after 256 crossings of its boundary.
+        let film = render_whole(&stage(), device).film;
+        assert_eq!(film.samples, 16, "{device:?}");
+    }
+}

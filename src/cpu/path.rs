@@ -160,6 +160,8 @@ fn fly(scene: &Bindings, ray: &Ray, hit: Hit, tally: &mut Tally) -> Arrival {
     let mut mists = ray.mists;
     let mut origin = ray.start;
     let mut left = if hit.t < 0.0 { T_INFINITY } else { hit.t };
+    let mut boundary = 0;
+    let mut step = 0.0;
     for leg in 0..=MIST_CROSSINGS {
         let numbers = leg_numbers(ray, leg);
         let free = free_flight(mists_density(scene, mists), numbers.x);
@@ -183,8 +185,12 @@ fn fly(scene: &Bindings, ray: &Ray, hit: Hit, tally: &mut Tally) -> Arrival {
             }
         }
         mists = mist_cross(mists, number, surface.entering);
-        origin = beyond_boundary(surface.point, origin, ray.direction, met.t, material.mist_step);
-        left -= met.t + material.mist_step;
+        // A grazing ray stays so near to the boundary that it meets it again and again: its steps double.
+        let met_boundary = 2 * number + u32::from(surface.entering);
+        step = if met_boundary == boundary { 2.0 * step } else { material.mist_step };
+        boundary = met_boundary;
+        origin = beyond_boundary(surface.point, origin, ray.direction, met.t, step);
+        left -= met.t + step;
     }
     tally.flags |= STATUS_MIST_CROSSINGS;
     Arrival::Surface(mists)
