@@ -19,8 +19,8 @@ pub struct Material {
     /// Where given, the diffuse colour comes from this image.
     pub texture: Option<Arc<Image>>,
     pub bump: Option<Bump>,
-    /// Where given, the shape is a volume of mist: scattering events a world unit, in (0, 1]. Only `diffuse` and
-    /// `texture` count beside it.
+    /// Where given, the shape is a volume of mist: scattering events a world unit, in (0, 1]. Only `diffuse` counts
+    /// beside it.
     pub density: Option<f32>,
     /// Radiance that the surface sends out by itself.
     pub emission: Vec3,

@@ -12,12 +12,8 @@ impl PolygonMesh {
         PolygonMesh { mesh: Mesh { name: name.into(), ..Mesh::default() } }
     }
 
-    /// Vertices are numbered from 0 in the order in which they are added. Coordinates must be finite in `f32`.
-    pub fn add_vertex(&mut self, position: DVec3) {
-        self.mesh.positions.push(position.as_vec3());
-    }
-
-    /// Sets the positions, normals and texture coordinates of all vertices at once, in the terms of [`Mesh`].
+    /// Sets the positions, normals and texture coordinates of all vertices, which are numbered from 0 and must be finite,
+    /// in the terms of [`Mesh`].
     pub fn set_vertices(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>, uvs: Vec<Vec2>) {
         self.mesh = Mesh { positions, normals, uvs, ..std::mem::take(&mut self.mesh) };
     }

@@ -407,6 +407,17 @@ fn mist_with_a_surface_is_warned_of() {
     sandbox.write("a.png", include_bytes!("../../assets/dimples.png"));
     let summary = sandbox.run(others).unwrap();
     assert!(summary.warnings[0].ends_with("'texture', 'casts_shadow' does nothing"), "{:?}", summary.warnings);
+    for (calls, warned) in [
+        ("s:set_material(mist) s:set_texture(gr.texture('a.png'))", true),
+        ("s:set_texture(gr.texture('a.png')) s:set_material(mist)", true),
+        ("s:set_texture(gr.texture('a.png')) s:set_material(gr.material{})", false),
+    ] {
+        let script = format!("local s, mist = gr.sphere('fog'), gr.material{{density=0.5}} {calls}");
+        let warnings = sandbox.run(&script).unwrap().warnings;
+        let expected = "'fog' is mist, which has no surface: its texture does nothing";
+        assert_eq!(warnings.iter().any(|warning| warning.ends_with(expected)), warned, "{calls}: {warnings:?}");
+        assert_eq!(warnings.len(), usize::from(warned));
+    }
     assert_eq!(sandbox.run("gr.material{density=0.5, diffuse={1,1,1}}").unwrap().warnings, [""; 0]);
     assert!(message("gr.material{density=0.5, bump='gone.png'}").contains("cannot find 'gone.png'"));
 }

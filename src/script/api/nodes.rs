@@ -1,7 +1,7 @@
 //! `gr.node`, `gr.joint`, and what hangs nodes together.
 
 use super::Function;
-use crate::scene::{Bump, Geometry, Image, NodeId};
+use crate::scene::{Bump, Geometry, Image, MaterialId, NodeId};
 use crate::script::arguments::{Call, Failure, NodeHandle, Outcome};
 use crate::script::state::State;
 use glam::{DQuat, DVec3};
@@ -70,6 +70,7 @@ fn set_material(call: &Call) -> Outcome<Value> {
     let material = call.given(1).material()?;
     check_shape(call, node, "a material")?;
     call.state_mut().set_material(node, material);
+    warn_of_texture_in_mist(call, node);
     Ok(Value::Nil)
 }
 
@@ -79,6 +80,7 @@ fn set_texture(call: &Call) -> Outcome<Value> {
     let texture = image_or_nil(call, 1)?;
     check_shape(call, node, "a texture")?;
     call.state_mut().set_texture(node, texture);
+    warn_of_texture_in_mist(call, node);
     Ok(Value::Nil)
 }
 
@@ -89,6 +91,19 @@ fn set_bump(call: &Call) -> Outcome<Value> {
     check_shape(call, node, "a bump map")?;
     call.state_mut().set_bump(node, bump);
     Ok(Value::Nil)
+}
+
+/// Mist has no surface that could show an image.
+fn warn_of_texture_in_mist(call: &Call, node: NodeId) {
+    let idle = {
+        let state = call.state();
+        let node = state.graph().node(node);
+        let is_mist = |id: MaterialId| state.graph().materials[id.0 as usize].density.is_some();
+        (node.texture.is_some() && node.material.is_some_and(is_mist)).then(|| node.name.clone())
+    };
+    if let Some(name) = idle {
+        call.state_mut().warn(call.lua, &format!("'{name}' is mist, which has no surface: its texture does nothing"));
+    }
 }
 
 fn image_or_nil(call: &Call, index: usize) -> Outcome<Option<Arc<Image>>> {
