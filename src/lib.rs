@@ -43,6 +43,7 @@ pub mod film;
 pub mod flatten;
 pub mod gpu;
 pub mod layout;
+pub mod memory;
 pub mod render;
 pub mod renderer;
 pub mod scene;

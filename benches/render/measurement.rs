@@ -4,6 +4,7 @@ use crate::{Result, scene};
 use gpu_trace::device::{DeviceChoice, open_renderer};
 use gpu_trace::flatten::flatten;
 use gpu_trace::layout::{RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_SHADOW};
+use gpu_trace::memory::peak_memory;
 use gpu_trace::render::{RenderOptions, Rendered, Unattended, render};
 use serde::{Deserialize, Serialize};
 use std::process::Command;
@@ -141,11 +142,4 @@ pub fn in_own_process(name: &str, device: &str, size: Option<[u32; 2]>, samples:
         return Err(format!("{name} on {device}: {}", String::from_utf8_lossy(&output.stderr).trim()).into());
     }
     Ok(serde_json::from_slice(&output.stdout)?)
-}
-
-/// Linux's record of the most memory that this process ever had in use, bytes.
-fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }

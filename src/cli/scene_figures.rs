@@ -1,6 +1,7 @@
 //! What a scene took to build, in numbers: for `-v` and `--json`.
 
 use gpu_trace::flatten::Statistics;
+use gpu_trace::memory::peak_memory;
 use serde::Serialize;
 use std::fmt;
 
@@ -73,12 +74,4 @@ fn grouped(number: u64) -> String {
 
 fn mebibytes(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
-}
-
-/// The most physical memory that the process has had, as Linux counts it.
-fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix(" kB")?.parse().ok()?;
-    Some(kibibytes << 10)
 }
