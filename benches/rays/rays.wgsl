@@ -1,0 +1,68 @@
+// Incoherent diffuse paths, for their rays alone: `walk` in benches/rays/main.rs is the same in Rust, and
+// benches/peers/rays.cpp on Embree.
+
+const SAMPLES: u32 = 4u;
+const BOUNCES: u32 = 3u;
+
+fn pcg(value: u32) -> u32 {
+    let state = value * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+var<private> random_state: u32;
+
+fn uniform_number() -> f32 {
+    random_state = pcg(random_state);
+    return unit_from_bits(random_state);
+}
+
+@compute @workgroup_size(64)
+fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    if (group.x >= dispatch.block_count) {
+        return;
+    }
+    let block = dispatch.first_block + (group.x * dispatch.block_stride) % dispatch.block_count;
+    let blocks_across = frame.image_size.x / 8u;
+    let pixel = vec2<u32>(block % blocks_across, block / blocks_across) * 8u + pixel_in_block(lane);
+    tally = Tally(0u, vec4<u32>(0u));
+    random_state = pcg(pixel.x + pixel.y * frame.image_size.x);
+
+    var origin: vec3<f32>;
+    var direction: vec3<f32>;
+    var sample = 0u;
+    var bounce = 0u;
+    // Each turn traces one ray, so that lanes whose path has ended go on with the next.
+    while (sample < SAMPLES) {
+        if (bounce == 0u) {
+            let x = (f32(pixel.x) + uniform_number()) / f32(frame.image_size.x) * 2.0 - 1.0;
+            let y = 1.0 - (f32(pixel.y) + uniform_number()) / f32(frame.image_size.y) * 2.0;
+            origin = vec3<f32>(0.0, 1.2, 3.2);
+            direction = normalize(vec3<f32>(0.8 * x, 0.8 * y - 0.35, -1.0));
+        }
+        tally.rays[0] += 1u;
+        let hit = traverse(origin, direction, T_INFINITY, false, INSTANCE_SEEN);
+        if (hit.t < 0.0) {
+            sample++;
+            bounce = 0u;
+            continue;
+        }
+        let triangle = triangles[hit.primitive];
+        var normal = triangle_geometric_normal(triangle.p0, triangle.p1, triangle.p2);
+        normal = select(normal, -normal, dot(normal, direction) > 0.0);
+        origin += hit.t * direction + 1e-3 * normal;
+        let phi = 6.2831853 * uniform_number();
+        let z = 2.0 * uniform_number() - 1.0;
+        let sine = sqrt(max(1.0 - z * z, 0.0));
+        direction = normalize(normal + 0.999 * vec3<f32>(sine * cos(phi), sine * sin(phi), z));
+        bounce++;
+        if (bounce > BOUNCES) {
+            sample++;
+            bounce = 0u;
+        }
+    }
+    atomicAdd(&status.rays[block % RAY_SLOTS], tally.rays[0]);
+    if (tally.flags != 0u) {
+        atomicOr(&status.flags, tally.flags);
+    }
+}
