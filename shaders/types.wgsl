@@ -31,8 +31,8 @@ struct Frame {
     image_size: vec2<u32>,
     // The first `plane_count` instances are infinite planes, outside the hierarchy.
     plane_count: u32,
-    // 1 where nodes[0] is the root of the hierarchy over the other instances, 0 where there are none.
-    has_root: u32,
+    // The instances after them; nodes[0] is the root of the hierarchy over these, if there are any.
+    bounded_count: u32,
     light_count: u32,
     // Camera samples share this number of passes; each pass takes a slice of the splits at depth 0.
     pass_count: u32,
@@ -70,22 +70,19 @@ struct Dispatch {
 };
 
 // One node of the compressed wide hierarchy, eight children in 80 bytes (Ylitie, Karras, Laine 2017, section 3);
-// the byte order is obvhs's, whose minima and maxima are interleaved.
+// the byte order is obvhs's. Five loads of 16 bytes: lavapipe's take about the same time whatever their width.
 struct Node {
-    // Minimum corner of the quantisation grid.
-    p: vec3<f32>,
-    // Three exponent bytes (x lowest), then the mask of the children that are inner nodes.
-    exponents_imask: u32,
-    child_base: u32,
-    primitive_base: u32,
-    // A byte a child: 001 and 24 + slot for an inner child; unary primitive count and offset for a leaf; 0 for none.
-    meta_bytes: vec2<u32>,
-    min_x: vec2<u32>,
-    max_x: vec2<u32>,
-    min_y: vec2<u32>,
-    max_y: vec2<u32>,
-    min_z: vec2<u32>,
-    max_z: vec2<u32>,
+    // Minimum corner of the quantisation grid (bits of f32); three exponent bytes (x lowest), then the mask of the
+    // children that are inner nodes.
+    grid: vec4<u32>,
+    // First inner child, first primitive; then a byte a child: 001 and 24 + slot for an inner child; unary primitive
+    // count and offset for a leaf; 0 for none.
+    children: vec4<u32>,
+    // Bounds of the children along an axis, a byte each in units of the grid: minima of 0 to 3, minima of 4 to 7, maxima
+    // of 0 to 3, maxima of 4 to 7.
+    x: vec4<u32>,
+    y: vec4<u32>,
+    z: vec4<u32>,
 };
 
 // A shape placed in the world. Affine maps are three rows of (linear part, translation).

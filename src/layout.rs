@@ -4,7 +4,7 @@
 //! the WGSL declarations, which are the ones a reader of the kernel meets; here only what Rust adds is said.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{UVec2, Vec3, Vec4};
+use glam::{UVec2, UVec4, Vec3, Vec4};
 
 /// Constants of one picture; twin of `Frame`.
 #[repr(C)]
@@ -27,7 +27,7 @@ pub struct Frame {
     pub medium: UVec2,
     pub image_size: UVec2,
     pub plane_count: u32,
-    pub has_root: u32,
+    pub bounded_count: u32,
     pub light_count: u32,
     pub pass_count: u32,
     pub shadow_count: u32,
@@ -57,17 +57,11 @@ pub struct Dispatch {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Node {
-    pub p: Vec3,
-    pub exponents_imask: u32,
-    pub child_base: u32,
-    pub primitive_base: u32,
-    pub meta_bytes: UVec2,
-    pub min_x: UVec2,
-    pub max_x: UVec2,
-    pub min_y: UVec2,
-    pub max_y: UVec2,
-    pub min_z: UVec2,
-    pub max_z: UVec2,
+    pub grid: UVec4,
+    pub children: UVec4,
+    pub x: UVec4,
+    pub y: UVec4,
+    pub z: UVec4,
 }
 
 /// Three rows of an affine map: (linear part, translation); `mat3x4<f32>` in WGSL.

@@ -180,11 +180,11 @@ fn planes_come_first_and_stay_outside_the_hierarchy() {
     let kinds: Vec<u32> = buffers.instances.iter().map(|instance| instance.shape).collect();
     assert_eq!(kinds[..2], [SHAPE_PLANE, SHAPE_PLANE]);
     assert_eq!(kinds[2..].iter().collect::<HashSet<_>>(), HashSet::from([&SHAPE_SPHERE, &SHAPE_CUBE]));
-    assert_eq!((buffers.frame.plane_count, buffers.frame.has_root), (2, 1));
+    assert_eq!((buffers.frame.plane_count, buffers.frame.bounded_count), (2, 2));
     let planes = flattened(&scene_of([(Shape::Plane, DAffine3::IDENTITY)]));
-    assert_eq!((planes.frame.plane_count, planes.frame.has_root, planes.nodes.len()), (1, 0, 0));
+    assert_eq!((planes.frame.plane_count, planes.frame.bounded_count, planes.nodes.len()), (1, 0, 0));
     let nothing = flattened(&scene_of([]));
-    assert_eq!((nothing.frame.plane_count, nothing.frame.has_root, nothing.instances.len()), (0, 0, 0));
+    assert_eq!((nothing.frame.plane_count, nothing.frame.bounded_count, nothing.instances.len()), (0, 0, 0));
 }
 
 #[test]

@@ -314,7 +314,7 @@ fn dispatches_that_do_not_fit_the_band_are_refused() {
         Frame { pass_count: 0, ..frame },
         Frame { plane_count: 1, ..frame },
         Frame { light_count: 1, ..frame },
-        Frame { has_root: 1, ..frame },
+        Frame { bounded_count: 1, ..frame },
     ];
     for frame in wrong {
         let result = renderer.submit(&frame, &[right]);

@@ -25,7 +25,7 @@ fn triangle_ranges(buffers: &SceneBuffers) -> BTreeMap<u32, Range<u32>> {
     let mut ranges = BTreeMap::new();
     for (root, end) in roots.iter().copied().zip(ends) {
         let nodes = &buffers.nodes[root as usize..end as usize];
-        let metas = nodes.iter().flat_map(|node| node.meta_bytes.to_array()).flat_map(u32::to_le_bytes);
+        let metas = nodes.iter().flat_map(|node| [node.children.z, node.children.w]).flat_map(u32::to_le_bytes);
         let leaves = metas.filter(|meta| meta & 0x18 != 0x18);
         let count: u32 = leaves.map(|meta| (meta >> 5).count_ones()).sum();
         ranges.insert(root, start..start + count);
@@ -261,10 +261,10 @@ fn the_comparison_notices_a_broken_hierarchy() {
     let breakages: [(&str, Breakage); 3] = [
         ("a box that is a quarter too short", |node| {
             let shorten = |bytes: u32| u32::from_le_bytes(bytes.to_le_bytes().map(|byte| byte - byte / 4));
-            node.max_x = UVec2::new(shorten(node.max_x.x), shorten(node.max_x.y));
+            node.x = UVec4::new(node.x.x, node.x.y, shorten(node.x.z), shorten(node.x.w));
         }),
-        ("empty children", |node| node.meta_bytes.x = 0),
-        ("a misplaced grid", |node| node.p.y += 3.0),
+        ("empty children", |node| node.children.z = 0),
+        ("a misplaced grid", |node| node.grid.y = (f32::from_bits(node.grid.y) + 3.0).to_bits()),
     ];
     for (name, breakage) in breakages {
         // The root over the instances, and the roots of all meshes.
@@ -286,6 +286,9 @@ fn the_comparison_notices_a_broken_hierarchy() {
     }
 }
 
+/// Bounds along an axis of eight children that fill the grid.
+const WHOLE: UVec4 = UVec4::new(0, 0, u32::MAX, u32::MAX);
+
 /// A hierarchy that leads back to itself, as no scene makes: the bounds end the loop, and say so.
 #[test]
 fn loop_and_stack_bounds_are_reported() {
@@ -296,10 +299,9 @@ fn loop_and_stack_bounds_are_reported() {
     assert_same("sound", &buffers, &[ray]);
     for node in &mut buffers.nodes {
         // Every child is an inner node, and fills the box; there is no way out.
-        *node = Node { child_base: 0, exponents_imask: node.exponents_imask | 0x0700_0000, ..*node };
-        node.meta_bytes = UVec2::new(0x003a_3938, 0);
-        (node.min_x, node.min_y, node.min_z) = (UVec2::ZERO, UVec2::ZERO, UVec2::ZERO);
-        (node.max_x, node.max_y, node.max_z) = (UVec2::MAX, UVec2::MAX, UVec2::MAX);
+        node.grid.w |= 0x0700_0000;
+        node.children = UVec4::new(0, node.children.y, 0x003a_3938, 0);
+        (node.x, node.y, node.z) = (WHOLE, WHOLE, WHOLE);
     }
     assert!(buffers.nodes.len() >= 3);
     let mut tally = Tally::default();

@@ -49,7 +49,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             }
         }
     }
-    if frame.has_root == 0u { return hit; }
+    if frame.bounded_count == 0u { return hit; }
 
     var stack: array<vec2<u32>, TRAVERSAL_STACK>;
     var height = 0u;
@@ -60,7 +60,9 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     var ray_origin = origin;
     var inverse = inverse_direction(direction);
     var octant = octant_bytes(direction);
-    var nodes_left = vec2<u32>(0u, 0x80000000u);
+    // The root; or the only instance, which needs no hierarchy.
+    let alone = frame.bounded_count == 1u;
+    var nodes_left = vec2<u32>(select(0u, frame.plane_count, alone), select(0x80000000u, 1u, alone));
 
     for (var turn = 0u; ; turn++) {
         if turn == TRAVERSAL_TURNS {
@@ -71,20 +73,18 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         if nodes_left.y > GROUP_PRIMITIVES {
             let bit = firstLeadingBit(nodes_left.y);
             nodes_left.y &= ~(1u << bit);
-            if nodes_left.y > GROUP_PRIMITIVES {
-                if height < TRAVERSAL_STACK {
-                    stack[height] = nodes_left;
-                    height++;
-                } else {
-                    tally.flags |= STATUS_STACK_FULL;
-                }
-            }
+            // Written whether or not anything is left: what only some lanes do costs lavapipe a branch for each of them.
+            let has_rest = nodes_left.y > GROUP_PRIMITIVES;
+            let has_room = height < TRAVERSAL_STACK;
+            stack[min(height, TRAVERSAL_STACK - 1u)] = nodes_left;
+            height += select(0u, 1u, has_rest && has_room);
+            tally.flags |= select(0u, STATUS_STACK_FULL, has_rest && !has_room);
             let slot = (bit - 24u) ^ (octant & 7u);
             let child = nodes_left.x + countOneBits(nodes_left.y & ~(0xffffffffu << slot));
             let node = nodes[child];
             let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
-            nodes_left = vec2<u32>(node.child_base, (bits & ~GROUP_PRIMITIVES) | (node.exponents_imask >> 24u));
-            primitives_left = vec2<u32>(node.primitive_base, bits & GROUP_PRIMITIVES);
+            nodes_left = vec2<u32>(node.children.x, (bits & ~GROUP_PRIMITIVES) | (node.grid.w >> 24u));
+            primitives_left = vec2<u32>(node.children.y, bits & GROUP_PRIMITIVES);
         } else {
             primitives_left = nodes_left;
             nodes_left = vec2<u32>(0u);
@@ -140,6 +140,8 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             }
         }
 
+        // Read whether or not it is needed, as above.
+        let top = stack[max(height, 1u) - 1u];
         if nodes_left.y <= GROUP_PRIMITIVES {
             if height == 0u { break; }
             if HAS_MESH && height == return_height {
@@ -149,7 +151,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
                 octant = octant_bytes(direction);
             }
             height--;
-            nodes_left = stack[height];
+            nodes_left = top;
         }
     }
     return hit;
@@ -174,58 +176,52 @@ fn octant_bytes(direction: vec3<f32>) -> u32 {
 // primitives of leaves in the low 24 bits.
 fn node_intersect(node: Node, origin: vec3<f32>, inverse: vec3<f32>, octant: u32, t_max: f32) -> u32 {
     let cell = vec3<f32>(
-        bitcast<f32>((node.exponents_imask & 0xffu) << 23u),
-        bitcast<f32>(((node.exponents_imask >> 8u) & 0xffu) << 23u),
-        bitcast<f32>(((node.exponents_imask >> 16u) & 0xffu) << 23u),
+        bitcast<f32>((node.grid.w & 0xffu) << 23u),
+        bitcast<f32>(((node.grid.w >> 8u) & 0xffu) << 23u),
+        bitcast<f32>(((node.grid.w >> 16u) & 0xffu) << 23u),
     );
     // Grid plane q is met at start + q * step; nearer and farther starts make up for all roundings.
     let step = cell * inverse;
-    let start = (node.p - origin) * inverse;
+    let start = (bitcast<vec3<f32>>(node.grid.xyz) - origin) * inverse;
     let slack = BOX_ERROR * (abs(start) + 256.0 * abs(step));
     let near = start - slack;
     let far = start + slack;
 
     let negative = inverse < vec3<f32>(0.0);
-    let near_x = select(node.min_x, node.max_x, negative.x);
-    let far_x = select(node.max_x, node.min_x, negative.x);
-    let near_y = select(node.min_y, node.max_y, negative.y);
-    let far_y = select(node.max_y, node.min_y, negative.y);
-    let near_z = select(node.min_z, node.max_z, negative.z);
-    let far_z = select(node.max_z, node.min_z, negative.z);
+    let near_x = select(node.x.xy, node.x.zw, negative.x);
+    let far_x = select(node.x.zw, node.x.xy, negative.x);
+    let near_y = select(node.y.xy, node.y.zw, negative.y);
+    let far_y = select(node.y.zw, node.y.xy, negative.y);
+    let near_z = select(node.z.xy, node.z.zw, negative.z);
+    let far_z = select(node.z.zw, node.z.xy, negative.z);
 
     return four_children(
-        node.meta_bytes.x, octant,
-        max(
-            max(unpack_bytes(near_x.x) * step.x + near.x, unpack_bytes(near_y.x) * step.y + near.y),
-            max(unpack_bytes(near_z.x) * step.z + near.z, vec4<f32>(0.0)),
-        ),
-        min(
-            min(unpack_bytes(far_x.x) * step.x + far.x, unpack_bytes(far_y.x) * step.y + far.y),
-            min(unpack_bytes(far_z.x) * step.z + far.z, vec4<f32>(t_max)),
-        ),
+        node.children.z, octant,
+        max(max(planes(near_x.x, step.x, near.x), planes(near_y.x, step.y, near.y)), planes(near_z.x, step.z, near.z)),
+        min(min(planes(far_x.x, step.x, far.x), planes(far_y.x, step.y, far.y)), planes(far_z.x, step.z, far.z)),
+        t_max,
     ) | four_children(
-        node.meta_bytes.y, octant,
-        max(
-            max(unpack_bytes(near_x.y) * step.x + near.x, unpack_bytes(near_y.y) * step.y + near.y),
-            max(unpack_bytes(near_z.y) * step.z + near.z, vec4<f32>(0.0)),
-        ),
-        min(
-            min(unpack_bytes(far_x.y) * step.x + far.x, unpack_bytes(far_y.y) * step.y + far.y),
-            min(unpack_bytes(far_z.y) * step.z + far.z, vec4<f32>(t_max)),
-        ),
+        node.children.w, octant,
+        max(max(planes(near_x.y, step.x, near.x), planes(near_y.y, step.y, near.y)), planes(near_z.y, step.z, near.z)),
+        min(min(planes(far_x.y, step.x, far.x), planes(far_y.y, step.y, far.y)), planes(far_z.y, step.z, far.z)),
+        t_max,
     );
 }
 
-// Where each of four children belongs in the group, if the ray's stretch inside its box is not empty.
-fn four_children(meta_bytes: u32, octant: u32, t_enter: vec4<f32>, t_leave: vec4<f32>) -> u32 {
+// Where a ray meets a plane of each of four children. As integers: the order of floats that are not negative is that of
+// their bits, a negative one stays below 0, and a minimum is one instruction, where one of floats takes care of NaN.
+fn planes(bytes: u32, step: f32, start: f32) -> vec4<i32> {
+    return bitcast<vec4<i32>>(vec4<f32>(unpack4xU8(bytes)) * step + start);
+}
+
+// Where each of four children belongs in the group, if the ray's stretch inside its box, from 0 to t_max, is not empty.
+fn four_children(meta_bytes: u32, octant: u32, near: vec4<i32>, far: vec4<i32>, t_max: f32) -> u32 {
     // Inner children have the offsets 24 to 31, which no leaf has: both bits of 24 are set.
     let inner_mask = (((meta_bytes & (meta_bytes << 1u)) & 0x10101010u) >> 4u) * 0xffu;
     let shifts = (meta_bytes ^ (octant & inner_mask)) & 0x1f1f1f1fu;
     let bits = (meta_bytes >> 5u) & 0x07070707u;
+    let t_enter = max(near, vec4<i32>(0));
+    let t_leave = min(far, vec4<i32>(bitcast<i32>(t_max)));
     let met = select(vec4<u32>(0u), unpack4xU8(bits) << unpack4xU8(shifts), t_enter <= t_leave);
     return met.x | met.y | met.z | met.w;
-}
-
-fn unpack_bytes(word: u32) -> vec4<f32> {
-    return vec4<f32>(unpack4xU8(word));
 }

@@ -2,6 +2,7 @@
 
 use super::binned;
 use crate::layout::Node;
+use glam::UVec4;
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 
@@ -43,15 +44,14 @@ fn collapse(boxes: &[Aabb], sah_levels: u32) -> Hierarchy {
 pub fn append(nodes: &mut Vec<Node>, hierarchy: &[Node], first_primitive: u32) {
     let first_node = nodes.len() as u32;
     nodes.extend(hierarchy.iter().map(|node| Node {
-        child_base: node.child_base + first_node,
-        primitive_base: node.primitive_base + first_primitive,
+        children: node.children + UVec4::new(first_node, first_primitive, 0, 0),
         ..*node
     }));
 }
 
 /// The inner children of a node, which lie side by side.
 fn inner_children(node: &Node) -> std::ops::Range<u32> {
-    node.child_base..node.child_base + (node.exponents_imask >> 24).count_ones()
+    node.children.x..node.children.x + (node.grid.w >> 24).count_ones()
 }
 
 /// Node indices, level by level.

@@ -20,7 +20,7 @@ fn sample_spread(scene: &Scene) -> f32 {
     (pixel * share) as f32
 }
 
-pub fn frame(scene: &Scene, plane_count: u32, has_root: bool) -> Result<Frame> {
+pub fn frame(scene: &Scene, plane_count: u32, bounded_count: u32) -> Result<Frame> {
     let camera = &scene.camera;
     let sampling = &scene.sampling;
     let right = camera.forward.cross(camera.up);
@@ -80,7 +80,7 @@ pub fn frame(scene: &Scene, plane_count: u32, has_root: bool) -> Result<Frame> {
         medium: UVec2::ZERO,
         image_size: UVec2::new(width, height),
         plane_count,
-        has_root: u32::from(has_root),
+        bounded_count,
         light_count: scene.lights.len() as u32,
         background_image: NONE,
         pixel_spread: sample_spread(scene),

@@ -114,7 +114,7 @@ pub fn flatten_with(scene: &Scene, cache: &FlattenCache) -> Result<SceneBuffers>
     let mists = mist::Mists::new(&mut materials, scene.camera.eye);
     let built = instances::build(&scene.graph, &placements, &meshes, &of_placement, mists)?;
     let lights = lights::lights(scene)?;
-    let mut frame = frame::frame(scene, built.plane_count, !built.nodes.is_empty())?;
+    let mut frame = frame::frame(scene, built.plane_count, built.instances.len() as u32 - built.plane_count)?;
     if let Some(image) = &scene.background.image {
         frame.background_image = atlas.add(image)?;
     }

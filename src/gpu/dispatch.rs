@@ -149,11 +149,13 @@ impl Session {
         if frame.image_size != image_size {
             return Err(format!("the picture was {image_size} and became {}", frame.image_size));
         }
-        if frame.plane_count as usize > instances || frame.light_count as usize > lights {
-            return Err(format!("{} planes, {} lights", frame.plane_count, frame.light_count));
+        let planes_and_bounded = u64::from(frame.plane_count) + u64::from(frame.bounded_count);
+        if planes_and_bounded > instances as u64 || frame.light_count as usize > lights {
+            return Err(format!("{planes_and_bounded} instances, {} lights", frame.light_count));
         }
-        if (frame.has_root != 0 && nodes == 0) || frame.pass_count == 0 {
-            return Err(format!("has_root {} with {nodes} nodes, {} passes", frame.has_root, frame.pass_count));
+        if (frame.bounded_count != 0 && nodes == 0) || frame.pass_count == 0 {
+            let Frame { bounded_count, pass_count, .. } = frame;
+            return Err(format!("{bounded_count} bounded instances with {nodes} nodes, {pass_count} passes"));
         }
         let rows = self.band.end - self.band.start;
         let blocks = image_size.x.div_ceil(BLOCK_EDGE) * rows.div_ceil(BLOCK_EDGE);

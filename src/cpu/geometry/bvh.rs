@@ -11,7 +11,7 @@ use crate::layout::{
     INSTANCE_MIST, INSTANCE_SEEN, INSTANCE_SHADES, NONE, Node, SHAPE_MESH, STATUS_LOOP_BOUND, STATUS_STACK_FULL,
 };
 use crate::renderer::Tally;
-use glam::{UVec2, Vec3};
+use glam::{UVec2, UVec4, Vec3};
 
 /// Groups that await their turn; the builder makes no hierarchy that needs more.
 const TRAVERSAL_STACK: usize = crate::flatten::TRAVERSAL_STACK as usize;
@@ -86,7 +86,7 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             }
         }
     }
-    if scene.frame.has_root == 0 {
+    if scene.frame.bounded_count == 0 {
         return hit;
     }
 
@@ -96,7 +96,11 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
     let mut ray_origin = origin;
     let mut inverse = inverse_direction(direction);
     let mut octant = octant_bytes(direction);
-    let mut nodes_left = UVec2::new(0, 0x8000_0000);
+    // The root; or the only instance, which needs no hierarchy.
+    let mut nodes_left = match scene.frame.bounded_count {
+        1 => UVec2::new(scene.frame.plane_count, 1),
+        _ => UVec2::new(0, 0x8000_0000),
+    };
 
     for turn in 0.. {
         if turn == TRAVERSAL_TURNS {
@@ -114,8 +118,8 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             let child = nodes_left.x + (nodes_left.y & !(0xffff_ffff << slot)).count_ones();
             let node = &scene.nodes[child as usize];
             let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
-            nodes_left = UVec2::new(node.child_base, (bits & !GROUP_PRIMITIVES) | (node.exponents_imask >> 24));
-            primitives_left = UVec2::new(node.primitive_base, bits & GROUP_PRIMITIVES);
+            nodes_left = UVec2::new(node.children.x, (bits & !GROUP_PRIMITIVES) | (node.grid.w >> 24));
+            primitives_left = UVec2::new(node.children.y, bits & GROUP_PRIMITIVES);
         } else {
             primitives_left = nodes_left;
             nodes_left = UVec2::ZERO;
@@ -215,27 +219,21 @@ pub fn octant_bytes(direction: Vec3) -> u32 {
 #[inline]
 pub fn node_intersect(node: &Node, origin: Vec3, inverse: Vec3, octant: u32, t_max: f32) -> u32 {
     let cell = Vec3::new(
-        f32::from_bits((node.exponents_imask & 0xff) << 23),
-        f32::from_bits(((node.exponents_imask >> 8) & 0xff) << 23),
-        f32::from_bits(((node.exponents_imask >> 16) & 0xff) << 23),
+        f32::from_bits((node.grid.w & 0xff) << 23),
+        f32::from_bits(((node.grid.w >> 8) & 0xff) << 23),
+        f32::from_bits(((node.grid.w >> 16) & 0xff) << 23),
     );
+    let corner = Vec3::new(f32::from_bits(node.grid.x), f32::from_bits(node.grid.y), f32::from_bits(node.grid.z));
     // Grid plane q is met at start + q * step; nearer and farther starts make up for all roundings.
     let step = cell * inverse;
-    let start = (node.p - origin) * inverse;
+    let start = (corner - origin) * inverse;
     let slack = BOX_ERROR * (start.abs() + 256.0 * step.abs());
     let near = start - slack;
     let far = start + slack;
 
-    let (near_x, far_x) = if inverse.x < 0.0 { (node.max_x, node.min_x) } else { (node.min_x, node.max_x) };
-    let (near_y, far_y) = if inverse.y < 0.0 { (node.max_y, node.min_y) } else { (node.min_y, node.max_y) };
-    let (near_z, far_z) = if inverse.z < 0.0 { (node.max_z, node.min_z) } else { (node.min_z, node.max_z) };
-
-    let near_x = unpack_bytes(near_x);
-    let near_y = unpack_bytes(near_y);
-    let near_z = unpack_bytes(near_z);
-    let far_x = unpack_bytes(far_x);
-    let far_y = unpack_bytes(far_y);
-    let far_z = unpack_bytes(far_z);
+    let (near_x, far_x) = near_and_far(node.x, inverse.x);
+    let (near_y, far_y) = near_and_far(node.y, inverse.y);
+    let (near_z, far_z) = near_and_far(node.z, inverse.z);
     let mut met = 0;
     for i in 0..8 {
         let t_enter = larger(
@@ -254,7 +252,7 @@ pub fn node_intersect(node: &Node, origin: Vec3, inverse: Vec3, octant: u32, t_m
 /// Where each of the children that are met (bit i: child i) belongs in the group.
 #[inline]
 fn child_bits(node: &Node, octant: u32, mut met: u32) -> u32 {
-    let meta_bytes = u64::from(node.meta_bytes.x) | (u64::from(node.meta_bytes.y) << 32);
+    let meta_bytes = u64::from(node.children.z) | (u64::from(node.children.w) << 32);
     let octant = u64::from(octant) | (u64::from(octant) << 32);
     // Inner children have the offsets 24 to 31, which no leaf has: both bits of 24 are set.
     let inner_mask = (((meta_bytes & (meta_bytes << 1)) & 0x1010_1010_1010_1010) >> 4) * 0xff;
@@ -269,10 +267,16 @@ fn child_bits(node: &Node, octant: u32, mut met: u32) -> u32 {
     result
 }
 
+/// The planes of the eight children along an axis, in grid units, that a ray meets first and last.
 #[inline]
-fn unpack_bytes(words: UVec2) -> [f32; 8] {
-    let low = words.x.to_le_bytes();
-    let high = words.y.to_le_bytes();
+fn near_and_far(bounds: UVec4, inverse: f32) -> ([f32; 8], [f32; 8]) {
+    let (minima, maxima) = (unpack_bytes(bounds.x, bounds.y), unpack_bytes(bounds.z, bounds.w));
+    if inverse < 0.0 { (maxima, minima) } else { (minima, maxima) }
+}
+
+#[inline]
+fn unpack_bytes(low: u32, high: u32) -> [f32; 8] {
+    let (low, high) = (low.to_le_bytes(), high.to_le_bytes());
     [low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]].map(f32::from)
 }
 
