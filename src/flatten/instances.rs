@@ -75,7 +75,7 @@ pub fn build(
                 instance.root = index as u32;
                 instance.parameters = mesh.uv_rectangle;
                 instanced_triangles += mesh.triangles.len() as u64;
-                mesh.bounds.transformed(&world_from_object)
+                mesh.bounds_in(&world_from_object)
             }
             shape => match shape_bounds(shape, &world_from_object) {
                 Some(bounds) => bounds,

@@ -7,7 +7,7 @@ use super::walk::Placement;
 use crate::layout::{TRIANGLE_SMOOTH, Triangle};
 use crate::scene::{Mesh, Shape};
 use crate::{Error, Result};
-use glam::{DVec3, Vec2, Vec3, Vec3A, Vec4};
+use glam::{DAffine3, DVec3, Vec2, Vec3, Vec3A, Vec4};
 use obvhs::aabb::Aabb;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -21,10 +21,20 @@ pub struct BuiltMesh {
     pub hierarchy: Hierarchy,
     /// In object space.
     pub bounds: Bounds,
+    /// Boxes that hold the mesh together, at most [`MAX_PARTS`]: turned with an instance and then enclosed, they leave
+    /// less empty space than `bounds` would, and fewer rays enter the instance in vain.
+    parts: Vec<Bounds>,
     /// Least texture coordinates and their extent.
     pub uv_rectangle: Vec4,
     /// Triangles without an area, left out.
     pub degenerate: usize,
+}
+
+impl BuiltMesh {
+    /// The box around the mesh in another space.
+    pub fn bounds_in(&self, map: &DAffine3) -> Bounds {
+        self.parts.iter().map(|part| part.transformed(map)).fold(Bounds::EMPTY, Bounds::union)
+    }
 }
 
 /// The different meshes of a scene, in the order of their first use.
@@ -70,6 +80,9 @@ const MIN_EDGE: f32 = 1e-18;
 /// Triangles that one task takes on: whatever is summed up is so in these portions, however many threads there are.
 const PORTION: usize = 4096;
 
+/// Runs of triangles, neighbours in the hierarchy, that get a box each.
+const MAX_PARTS: usize = 64;
+
 fn build(mesh: &Mesh) -> Result<BuiltMesh> {
     check(mesh)?;
     let (uv_min, uv_extent) = uv_rectangle(mesh);
@@ -87,17 +100,22 @@ fn build(mesh: &Mesh) -> Result<BuiltMesh> {
             Aabb::new(p0.min(p1).min(p2), p0.max(p1).max(p2))
         })
         .collect();
-    let bounds = boxes
-        .iter()
-        .fold(Bounds::EMPTY, |bounds, own| bounds.extended(own.min.as_dvec3()).extended(own.max.as_dvec3()));
+    let bounds = enclose(boxes.iter());
     let hierarchy = bvh::build(&boxes);
+    let run = boxes.len().div_ceil(MAX_PARTS).max(1);
+    let parts = hierarchy.order.chunks(run).map(|run| enclose(run.iter().map(|&i| &boxes[i as usize]))).collect();
     Ok(BuiltMesh {
+        parts,
         triangles: hierarchy.order.par_iter().with_min_len(PORTION).map(|&i| triangles[i as usize]).collect(),
         degenerate: mesh.triangles.len() - triangles.len(),
         bounds,
         uv_rectangle: Vec4::new(uv_min.x, uv_min.y, uv_extent.x, uv_extent.y),
         hierarchy,
     })
+}
+
+fn enclose<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> Bounds {
+    boxes.fold(Bounds::EMPTY, |bounds, own| bounds.extended(own.min.as_dvec3()).extended(own.max.as_dvec3()))
 }
 
 /// Least texture coordinates of the corners, and their extent; zeros without any.
