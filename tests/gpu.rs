@@ -174,7 +174,7 @@ fn echo(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         film[0].high = vec4<u32>(arrayLength(&lights), arrayLength(&texels), texels[2], bitcast<u32>(lights[1].colour.y));
     }
     if (at == 1u) {
-        film[1].low = vec4<u32>(nodes[1].max_z.y, instances[1].root, triangles[1].flags, materials[1].medium);
+        film[1].low = vec4<u32>(nodes[1].z.w, instances[1].root, triangles[1].flags, materials[1].medium);
         film[1].high = bitcast<vec4<u32>>(instances[1].world_from_object[2]);
     }
 }";
@@ -229,7 +229,7 @@ fn scene_buffers_arrive_and_empty_ones_hold_one_element() {
     };
     let mut full = scene();
     full.nodes = vec![Node::default(); 2];
-    full.nodes[1].max_z.y = 11;
+    full.nodes[1].z.w = 11;
     full.instances = vec![Instance::default(); 3];
     full.instances[1].root = 12;
     full.instances[1].world_from_object[2] = glam::Vec4::new(1.0, 2.0, 3.0, 4.0);

@@ -16,7 +16,7 @@ macro_rules! wgsl_types {
 }
 wgsl_types! {
     f32 => "f32", u32 => "u32", glam::Vec3 => "vec3<f32>", glam::Vec4 => "vec4<f32>", glam::UVec2 => "vec2<u32>",
-    AffineRows => "mat3x4<f32>", [u32; 4] => "vec4<u32>", [u32; 256] => "array<u32, 256>",
+    glam::UVec4 => "vec4<u32>", AffineRows => "mat3x4<f32>", [u32; 4] => "vec4<u32>", [u32; 256] => "array<u32, 256>",
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -91,13 +91,7 @@ fn rust_structs() -> Vec<Struct> {
             block_stride,
             canary_turns,
         }),
-        rust_struct!(Node {
-            grid,
-            children,
-            x,
-            y,
-            z,
-        }),
+        rust_struct!(Node { grid, children, x, y, z }),
         rust_struct!(Instance { object_from_world, shape, material, root, flags, world_from_object, parameters }),
         rust_struct!(Triangle { p0, n0, p1, n1, p2, n2, uv0, uv1, uv2, flags }),
         rust_struct!(Material {

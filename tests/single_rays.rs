@@ -2,7 +2,7 @@
 //! anywhere in the scene and go anywhere, so that they meet insides, edges and grazing angles that cameras miss.
 
 use crate::support::{Stage, paint};
-use glam::{DAffine3, DVec3, UVec2, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 use gpu_trace::cpu::bindings::Bindings;
 use gpu_trace::cpu::geometry::bvh::{scene_intersect, scene_occluded};
 use gpu_trace::cpu::geometry::instance::surface_at;

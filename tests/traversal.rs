@@ -1,7 +1,7 @@
 //! The traversal of the hierarchy against brute force over everything.
 
 use crate::support::placed::*;
-use glam::{DAffine3, DMat3, DQuat, DVec3, UVec2, Vec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, UVec4, Vec3};
 use gpu_trace::cpu::bindings::Bindings;
 use gpu_trace::cpu::geometry::bvh::{scene_intersect, scene_occluded};
 use gpu_trace::cpu::geometry::hit::MISS;

@@ -16,7 +16,8 @@ impl Embree {
     /// Compiles the program and writes the mesh; `None` where Embree's headers are not installed.
     pub fn prepare(mesh: &Mesh) -> Result<Option<Self>> {
         std::fs::create_dir_all(FOLDER)?;
-        let embree = Embree { program: Path::new(FOLDER).join("embree_rays"), mesh: Path::new(FOLDER).join("rays.mesh") };
+        let embree =
+            Embree { program: Path::new(FOLDER).join("embree_rays"), mesh: Path::new(FOLDER).join("rays.mesh") };
         let built = Command::new("g++")
             .args(["-O3", "-march=native", "-o"])
             .arg(&embree.program)

@@ -72,7 +72,8 @@ fn run(arguments: &Arguments) -> Result<()> {
         buffers.statistics.buffer_bytes as f64 / 1048576.0
     );
     let mut gpu = Gpu::new(buffers.clone())?;
-    let mut rows: Vec<(String, Vec<Traced>)> = vec![(gpu.name.clone(), Vec::new()), ("CPU renderer".into(), Vec::new())];
+    let mut rows: Vec<(String, Vec<Traced>)> =
+        vec![(gpu.name.clone(), Vec::new()), ("CPU renderer".into(), Vec::new())];
     if embree.is_some() {
         rows.push(("Embree".into(), Vec::new()));
     }
@@ -112,8 +113,11 @@ struct Gpu {
 
 impl Gpu {
     fn new(buffers: Arc<SceneBuffers>) -> Result<Self> {
-        let parts: Vec<Part> =
-            PARTS.iter().copied().chain([Part { path: "benches/rays/rays.wgsl", text: include_str!("rays.wgsl") }]).collect();
+        let parts: Vec<Part> = PARTS
+            .iter()
+            .copied()
+            .chain([Part { path: "benches/rays/rays.wgsl", text: include_str!("rays.wgsl") }])
+            .collect();
         let device = Device::open(&DeviceSelector::Any)?;
         let name = format!("{} ({})", device.description().name, device.description().driver);
         let mut renderer =

@@ -1,8 +1,10 @@
 // Rays against the whole scene: a compressed wide hierarchy over the instances, whose leaves lead to one within each
 // mesh (Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017).
 // A group is (base index, bits). For nodes, the high byte says which children are still to be visited, in the order
-// of the ray's octant, and the low byte which children are inner nodes; for primitives, the low 24 bits say which
-// are still to be intersected. So a group of primitives is at most GROUP_PRIMITIVES, and a group of nodes is more.
+// of the ray's octant, and the low byte which children are inner nodes; for instances of meshes, the low 24 bits say
+// which are still to be entered. So a group of meshes is at most GROUP_PRIMITIVES, and a group of nodes is more. Every
+// turn visits one node, be it the root of a mesh that is just entered, and intersects the primitives that it leads to:
+// lanes that wait for one another all wait for the same thing.
 
 // Groups that await their turn; src/flatten/bvh.rs builds no hierarchy that needs more.
 const TRAVERSAL_STACK: u32 = 32u;
@@ -60,40 +62,53 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     var ray_origin = origin;
     var inverse = inverse_direction(direction);
     var octant = octant_bytes(direction);
-    // The root; or the only instance, which needs no hierarchy.
-    let alone = frame.bounded_count == 1u;
-    var nodes_left = vec2<u32>(select(0u, frame.plane_count, alone), select(0x80000000u, 1u, alone));
+    // The group in hand: nodes, or instances of meshes. The root, to begin with.
+    var group = vec2<u32>(0u, 0x80000000u);
+    if HAS_MESH && frame.bounded_count == 1u {
+        let only = frame.plane_count;
+        if instances[only].shape == SHAPE_MESH && (instances[only].flags & mask) != 0u {
+            group = vec2<u32>(only, 1u);
+        }
+    }
 
     for (var turn = 0u; ; turn++) {
         if turn == TRAVERSAL_TURNS {
             tally.flags |= STATUS_LOOP_BOUND;
             break;
         }
-        var primitives_left = vec2<u32>(0u);
-        if nodes_left.y > GROUP_PRIMITIVES {
-            let bit = firstLeadingBit(nodes_left.y);
-            nodes_left.y &= ~(1u << bit);
-            // Written whether or not anything is left: what only some lanes do costs lavapipe a branch for each of them.
-            let has_rest = nodes_left.y > GROUP_PRIMITIVES;
-            let has_room = height < TRAVERSAL_STACK;
-            stack[min(height, TRAVERSAL_STACK - 1u)] = nodes_left;
-            height += select(0u, 1u, has_rest && has_room);
-            tally.flags |= select(0u, STATUS_STACK_FULL, has_rest && !has_room);
-            let slot = (bit - 24u) ^ (octant & 7u);
-            let child = nodes_left.x + countOneBits(nodes_left.y & ~(0xffffffffu << slot));
-            let node = nodes[child];
-            let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
-            nodes_left = vec2<u32>(node.children.x, (bits & ~GROUP_PRIMITIVES) | (node.grid.w >> 24u));
-            primitives_left = vec2<u32>(node.children.y, bits & GROUP_PRIMITIVES);
-        } else {
-            primitives_left = nodes_left;
-            nodes_left = vec2<u32>(0u);
-        }
+        let bit = firstLeadingBit(group.y);
+        let is_mesh = HAS_MESH && group.y <= GROUP_PRIMITIVES;
+        let rest = group.y & ~(1u << bit);
+        // Written whether or not anything is left: what only some lanes do costs lavapipe a branch for each of them.
+        let has_rest = rest > select(GROUP_PRIMITIVES, 0u, is_mesh);
+        let has_room = height < TRAVERSAL_STACK;
+        stack[min(height, TRAVERSAL_STACK - 1u)] = vec2<u32>(group.x, rest);
+        height += select(0u, 1u, has_rest && has_room);
+        tally.flags |= select(0u, STATUS_STACK_FULL, has_rest && !has_room);
 
-        while primitives_left.y != 0u {
-            let bit = firstLeadingBit(primitives_left.y);
-            primitives_left.y &= ~(1u << bit);
-            let index = primitives_left.x + bit;
+        let slot = (bit - 24u) ^ (octant & 7u);
+        var child = group.x + countOneBits(rest & ~(0xffffffffu << (slot & 31u)));
+        if is_mesh {
+            instance = group.x + bit;
+            child = instances[instance].root;
+            let object_from_world = instances[instance].object_from_world;
+            let object_direction = transform_vector(object_from_world, direction);
+            ray_origin = transform_point(object_from_world, origin);
+            triangle_space = triangle_ray(ray_origin, object_direction);
+            inverse = inverse_direction(object_direction);
+            octant = octant_bytes(object_direction);
+            return_height = height;
+        }
+        let node = nodes[child];
+        let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
+        let inner = bits & ~GROUP_PRIMITIVES;
+        group = vec2<u32>(node.children.x, select(0u, inner | (node.grid.w >> 24u), inner != 0u));
+        var primitives_left = bits & GROUP_PRIMITIVES;
+        var meshes = 0u;
+        while primitives_left != 0u {
+            let place = firstLeadingBit(primitives_left);
+            primitives_left &= ~(1u << place);
+            let index = node.children.y + place;
             if HAS_MESH && return_height != NONE {
                 let triangle = triangles[index];
                 let met = triangle_intersect(triangle_space, triangle.p0, triangle.p1, triangle.p2, nearest);
@@ -107,42 +122,33 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             if (HAS_MIST || HAS_SHADOWLESS) && (instances[index].flags & mask) == 0u {
                 continue;
             }
-            let object_origin = transform_point(instances[index].object_from_world, origin);
-            let object_direction = transform_vector(instances[index].object_from_world, direction);
             if HAS_MESH && instances[index].shape == SHAPE_MESH {
-                if height + 2u <= TRAVERSAL_STACK {
-                    if primitives_left.y != 0u {
-                        stack[height] = primitives_left;
-                        height++;
-                    }
-                    if nodes_left.y > GROUP_PRIMITIVES {
-                        stack[height] = nodes_left;
-                        height++;
-                    }
-                } else {
-                    tally.flags |= STATUS_STACK_FULL;
-                }
-                return_height = height;
-                instance = index;
-                triangle_space = triangle_ray(object_origin, object_direction);
-                ray_origin = object_origin;
-                inverse = inverse_direction(object_direction);
-                octant = octant_bytes(object_direction);
-                nodes_left = vec2<u32>(instances[index].root, 0x80000000u);
-                primitives_left = vec2<u32>(0u);
-            } else {
-                let met = instance_intersect(index, object_origin, object_direction, nearest);
-                if met.t > 0.0 {
-                    hit = Hit(met.t, index, met.face, 0.0, 0.0);
-                    nearest = met.t;
-                    if any_hit { return hit; }
-                }
+                meshes |= 1u << place;
+                continue;
+            }
+            let object_from_world = instances[index].object_from_world;
+            let object_origin = transform_point(object_from_world, origin);
+            let object_direction = transform_vector(object_from_world, direction);
+            let met = instance_intersect(index, object_origin, object_direction, nearest);
+            if met.t > 0.0 {
+                hit = Hit(met.t, index, met.face, 0.0, 0.0);
+                nearest = met.t;
+                if any_hit { return hit; }
             }
         }
 
+        if HAS_MESH && meshes != 0u {
+            // The meshes first, then the node's inner children.
+            let has_inner = group.y != 0u;
+            let has_space = height < TRAVERSAL_STACK;
+            stack[min(height, TRAVERSAL_STACK - 1u)] = group;
+            height += select(0u, 1u, has_inner && has_space);
+            tally.flags |= select(0u, STATUS_STACK_FULL, has_inner && !has_space);
+            group = vec2<u32>(node.children.y, meshes);
+        }
         // Read whether or not it is needed, as above.
         let top = stack[max(height, 1u) - 1u];
-        if nodes_left.y <= GROUP_PRIMITIVES {
+        if group.y == 0u {
             if height == 0u { break; }
             if HAS_MESH && height == return_height {
                 return_height = NONE;
@@ -151,7 +157,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
                 octant = octant_bytes(direction);
             }
             height--;
-            nodes_left = top;
+            group = top;
         }
     }
     return hit;

@@ -43,10 +43,11 @@ fn collapse(boxes: &[Aabb], sah_levels: u32) -> Hierarchy {
 /// Appends a hierarchy whose primitives begin at `first_primitive` of their buffer.
 pub fn append(nodes: &mut Vec<Node>, hierarchy: &[Node], first_primitive: u32) {
     let first_node = nodes.len() as u32;
-    nodes.extend(hierarchy.iter().map(|node| Node {
-        children: node.children + UVec4::new(first_node, first_primitive, 0, 0),
-        ..*node
-    }));
+    nodes.extend(
+        hierarchy
+            .iter()
+            .map(|node| Node { children: node.children + UVec4::new(first_node, first_primitive, 0, 0), ..*node }),
+    );
 }
 
 /// The inner children of a node, which lie side by side.

@@ -96,39 +96,50 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
     let mut ray_origin = origin;
     let mut inverse = inverse_direction(direction);
     let mut octant = octant_bytes(direction);
-    // The root; or the only instance, which needs no hierarchy.
-    let mut nodes_left = match scene.frame.bounded_count {
-        1 => UVec2::new(scene.frame.plane_count, 1),
-        _ => UVec2::new(0, 0x8000_0000),
-    };
+    // The group in hand: nodes, or instances of meshes. The root, to begin with.
+    let mut group = UVec2::new(0, 0x8000_0000);
+    if scene.frame.bounded_count == 1 {
+        let only = scene.frame.plane_count;
+        let instance = &scene.instances[only as usize];
+        if instance.shape == SHAPE_MESH && instance.flags & MASK != 0 {
+            group = UVec2::new(only, 1);
+        }
+    }
 
     for turn in 0.. {
         if turn == TRAVERSAL_TURNS {
             tally.flags |= STATUS_LOOP_BOUND;
             break;
         }
-        let mut primitives_left;
-        if nodes_left.y > GROUP_PRIMITIVES {
-            let bit = first_leading_bit(nodes_left.y);
-            nodes_left.y &= !(1 << bit);
-            if nodes_left.y > GROUP_PRIMITIVES {
-                stack.push(nodes_left, tally);
-            }
-            let slot = (bit - 24) ^ (octant & 7);
-            let child = nodes_left.x + (nodes_left.y & !(0xffff_ffff << slot)).count_ones();
-            let node = &scene.nodes[child as usize];
-            let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
-            nodes_left = UVec2::new(node.children.x, (bits & !GROUP_PRIMITIVES) | (node.grid.w >> 24));
-            primitives_left = UVec2::new(node.children.y, bits & GROUP_PRIMITIVES);
-        } else {
-            primitives_left = nodes_left;
-            nodes_left = UVec2::ZERO;
+        let bit = first_leading_bit(group.y);
+        let is_mesh = group.y <= GROUP_PRIMITIVES;
+        let rest = group.y & !(1 << bit);
+        if rest > if is_mesh { 0 } else { GROUP_PRIMITIVES } {
+            stack.push(UVec2::new(group.x, rest), tally);
         }
-
-        while primitives_left.y != 0 {
-            let bit = first_leading_bit(primitives_left.y);
-            primitives_left.y &= !(1 << bit);
-            let index = primitives_left.x + bit;
+        let child = if is_mesh {
+            let index = group.x + bit;
+            let instance = &scene.instances[index as usize];
+            let object_direction = transform_vector(&instance.object_from_world, direction);
+            ray_origin = transform_point(&instance.object_from_world, origin);
+            inverse = inverse_direction(object_direction);
+            octant = octant_bytes(object_direction);
+            mesh = Some((index, triangle_ray(ray_origin, object_direction), stack.height));
+            instance.root
+        } else {
+            let slot = (bit - 24) ^ (octant & 7);
+            group.x + (rest & !(0xffff_ffff << slot)).count_ones()
+        };
+        let node = &scene.nodes[child as usize];
+        let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
+        let inner = bits & !GROUP_PRIMITIVES;
+        group = UVec2::new(node.children.x, if inner != 0 { inner | (node.grid.w >> 24) } else { 0 });
+        let mut primitives_left = bits & GROUP_PRIMITIVES;
+        let mut meshes = 0;
+        while primitives_left != 0 {
+            let place = first_leading_bit(primitives_left);
+            primitives_left &= !(1 << place);
+            let index = node.children.y + place;
             if let Some((instance, triangle_space, _)) = &mesh {
                 let triangle = &scene.triangles[index as usize];
                 let met = triangle_intersect(triangle_space, triangle.p0, triangle.p1, triangle.p2, nearest);
@@ -145,34 +156,30 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             if instance.flags & MASK == 0 {
                 continue;
             }
+            if instance.shape == SHAPE_MESH {
+                meshes |= 1 << place;
+                continue;
+            }
             let object_origin = transform_point(&instance.object_from_world, origin);
             let object_direction = transform_vector(&instance.object_from_world, direction);
-            if instance.shape == SHAPE_MESH {
-                if primitives_left.y != 0 {
-                    stack.push(primitives_left, tally);
-                }
-                if nodes_left.y > GROUP_PRIMITIVES {
-                    stack.push(nodes_left, tally);
-                }
-                mesh = Some((index, triangle_ray(object_origin, object_direction), stack.height));
-                ray_origin = object_origin;
-                inverse = inverse_direction(object_direction);
-                octant = octant_bytes(object_direction);
-                nodes_left = UVec2::new(instance.root, 0x8000_0000);
-                primitives_left = UVec2::ZERO;
-            } else {
-                let met = instance_intersect(scene, index, object_origin, object_direction, nearest);
-                if met.t > 0.0 {
-                    hit = Hit { t: met.t, instance: index, primitive: met.face, b1: 0.0, b2: 0.0 };
-                    nearest = met.t;
-                    if ANY_HIT {
-                        return hit;
-                    }
+            let met = instance_intersect(scene, index, object_origin, object_direction, nearest);
+            if met.t > 0.0 {
+                hit = Hit { t: met.t, instance: index, primitive: met.face, b1: 0.0, b2: 0.0 };
+                nearest = met.t;
+                if ANY_HIT {
+                    return hit;
                 }
             }
         }
 
-        if nodes_left.y <= GROUP_PRIMITIVES {
+        if meshes != 0 {
+            // The meshes first, then the node's inner children.
+            if group.y != 0 {
+                stack.push(group, tally);
+            }
+            group = UVec2::new(node.children.y, meshes);
+        }
+        if group.y == 0 {
             if mesh.as_ref().is_some_and(|(_, _, return_height)| stack.height == *return_height) {
                 mesh = None;
                 ray_origin = origin;
@@ -180,7 +187,7 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
                 octant = octant_bytes(direction);
             }
             match stack.pop() {
-                Some(group) => nodes_left = group,
+                Some(top) => group = top,
                 None => break,
             }
         }
