@@ -52,7 +52,7 @@ struct Frame {
     pixel_spread: f32,
 };
 
-// What one dispatch renders: one pass of one camera sample over a run of 8 x 8 pixel blocks of one band.
+// What one dispatch renders: one pass of one camera sample over some 8 x 8 pixel blocks of one band.
 struct Dispatch {
     // Camera sample and pass of this dispatch.
     sample_index: u32,
@@ -60,11 +60,11 @@ struct Dispatch {
     // The band of rows that the film buffer holds: first row and number of rows, pixels.
     band_row: u32,
     band_rows: u32,
-    // The run of pixel blocks, numbered along the rows of the band.
+    // The blocks, by their places in the order of `block_at` in blocks.wgsl: workgroup g takes the one at
+    // first_block + g. The stride from tile to tile is coprime to the number of tiles.
     first_block: u32,
     block_count: u32,
-    // Odd and coprime to block_count: workgroup g takes block first_block + (g * stride) % block_count.
-    block_stride: u32,
+    tile_stride: u32,
     // Turns of the loop that every invocation ends with; fewer made means that the driver cut loops short.
     canary_turns: u32,
 };

@@ -49,7 +49,7 @@ pub struct Dispatch {
     pub band_rows: u32,
     pub first_block: u32,
     pub block_count: u32,
-    pub block_stride: u32,
+    pub tile_stride: u32,
     pub canary_turns: u32,
 }
 

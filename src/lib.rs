@@ -36,6 +36,7 @@
 //! ```
 
 pub mod animation;
+pub mod blocks;
 pub mod cpu;
 pub mod device;
 pub mod error;

@@ -1,5 +1,6 @@
 //! The sample loop that both renderers serve: which pass of which sample runs where, and for how long.
 
+use crate::blocks::{BLOCK_EDGE, BlockOrder};
 use crate::cpu::bindings::Bindings;
 use crate::cpu::media::{media_at, mists_at};
 use crate::cpu::shading::medium::MIST_CROSSINGS;
@@ -24,8 +25,6 @@ const MAX_DISPATCHES: usize = 256;
 const MAX_BLOCKS: u64 = 65_535;
 /// Turns of the loop that shows whether the driver cuts loops short.
 const CANARY_TURNS: u32 = 4;
-/// Edge of a block in pixels; the kernels' workgroup covers one.
-const BLOCK_EDGE: u32 = 8;
 
 /// What to render of a scene.
 #[derive(Clone, Debug)]
@@ -221,8 +220,8 @@ impl Job<'_> {
     /// Runs every pass of every sample over the blocks of a band. Returns early with the flags when a bound is met.
     fn render_passes(&mut self, rows: &Range<u32>) -> Result<u32> {
         let band_rows = rows.end - rows.start;
-        let blocks =
-            u64::from(self.frame.image_size.x.div_ceil(BLOCK_EDGE)) * u64::from(band_rows.div_ceil(BLOCK_EDGE));
+        let order = BlockOrder::new(self.frame.image_size.x, band_rows);
+        let (blocks, tile_stride) = (u64::from(order.places()), order.stride());
         let passes = u64::from(self.frame.pass_count);
         let samples = u64::from(self.options.samples.end - self.options.samples.start);
         let total = samples * passes * blocks;
@@ -247,7 +246,7 @@ impl Job<'_> {
                     band_rows,
                     first_block: block as u32,
                     block_count: count as u32,
-                    block_stride: block_stride(count as u32),
+                    tile_stride,
                     canary_turns: CANARY_TURNS,
                 });
                 next += count;
@@ -277,35 +276,9 @@ impl Job<'_> {
     }
 }
 
-/// An odd number near the golden section of `count` and coprime to it: multiples modulo `count` visit every block once
-/// and spread neighbours over the picture.
-fn block_stride(count: u32) -> u32 {
-    let mut stride = (f64::from(count) * 0.618_034) as u32 | 1;
-    while greatest_common_divisor(stride, count) != 1 {
-        stride += 2;
-    }
-    stride
-}
-
-fn greatest_common_divisor(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_block_is_visited_once() {
-        for count in 1..500 {
-            let stride = block_stride(count);
-            let mut seen = vec![false; count as usize];
-            for group in 0..count {
-                seen[(group * stride % count) as usize] = true;
-            }
-            assert!(stride % 2 == 1 && seen.iter().all(|visited| *visited), "count {count}, stride {stride}");
-        }
-    }
 
     #[test]
     fn bands_are_whole_blocks() {

@@ -26,6 +26,7 @@ pub const PARTS: &[Part<'static>] = parts![
     "types.wgsl"
     "bindings.wgsl"
     "tally.wgsl"
+    "blocks.wgsl"
     "math/elementary.wgsl"
     "math/rng.wgsl"
     "math/sampling.wgsl"

@@ -3,6 +3,7 @@
 
 use glam::{UVec2, Vec3};
 use gpu_trace::Error;
+use gpu_trace::blocks::{BlockOrder, TILE_BLOCKS};
 use gpu_trace::film::Film;
 use gpu_trace::flatten::SceneBuffers;
 use gpu_trace::gpu::{Device, DeviceSelector, GpuOptions, GpuRenderer};
@@ -19,10 +20,9 @@ const PATTERN: &str = "
 @compute @workgroup_size(64)
 fn pattern(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     if (group.x >= dispatch.block_count) { return; }
-    let block = dispatch.first_block + (group.x * dispatch.block_stride) % dispatch.block_count;
-    let across = (frame.image_size.x + 7u) / 8u;
-    let x = (block % across) * 8u + lane % 8u;
-    let y = (block / across) * 8u + lane / 8u;
+    let block = block_at(dispatch.first_block + group.x);
+    let x = block.x * 8u + lane % 8u;
+    let y = block.y * 8u + lane / 8u;
     if (x >= frame.image_size.x || y >= dispatch.band_rows) { return; }
     let index = y * frame.image_size.x + x;
     let row = y + dispatch.band_row;
@@ -56,8 +56,9 @@ fn open_device() -> Device {
 }
 
 fn renderer(device: Device, kernel: &'static str, entry_point: &str, checked: bool) -> GpuRenderer {
-    let shared = ["shaders/types.wgsl", "shaders/bindings.wgsl"].map(|path| part(path).expect("a shared part"));
-    let parts = [shared[0], shared[1], Part { path: "tests/gpu.wgsl", text: kernel }];
+    let shared = ["shaders/types.wgsl", "shaders/bindings.wgsl", "shaders/blocks.wgsl"]
+        .map(|path| part(path).expect("a shared part"));
+    let parts = [shared[0], shared[1], shared[2], Part { path: "tests/gpu.wgsl", text: kernel }];
     let program = Program::link(&parts).unwrap_or_else(|error| panic!("{error}"));
     GpuRenderer::with_program(device, GpuOptions { checked }, program, entry_point)
 }
@@ -76,7 +77,7 @@ fn pattern_renderer(checked: bool) -> GpuRenderer {
 /// The runs of `run` blocks that cover a band.
 fn runs(rows: std::ops::Range<u32>, run: u32, stride: impl Fn(u32) -> u32, sample: u32) -> Vec<Dispatch> {
     let band_rows = rows.end - rows.start;
-    let blocks = WIDTH.div_ceil(8) * band_rows.div_ceil(8);
+    let blocks = BlockOrder::new(WIDTH, band_rows).places();
     let dispatch = |first_block: u32| {
         let block_count = run.min(blocks - first_block);
         Dispatch {
@@ -86,7 +87,7 @@ fn runs(rows: std::ops::Range<u32>, run: u32, stride: impl Fn(u32) -> u32, sampl
             band_rows,
             first_block,
             block_count,
-            block_stride: stride(block_count),
+            tile_stride: stride(blocks / TILE_BLOCKS),
             canary_turns: 0,
         }
     };
@@ -167,7 +168,7 @@ const ECHO: &str = "
 fn echo(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     if (group.x >= dispatch.block_count || lane != 0u) { return; }
     let at = dispatch.sample_index;
-    film[at].low = vec4<u32>(dispatch.pass_index, dispatch.first_block, dispatch.block_stride, dispatch.canary_turns);
+    film[at].low = vec4<u32>(dispatch.pass_index, dispatch.first_block, dispatch.tile_stride, dispatch.canary_turns);
     film[at].high = vec4<u32>(dispatch.band_row, dispatch.band_rows, dispatch.block_count, frame.seed);
     if (at == 0u) {
         film[0].low = vec4<u32>(arrayLength(&nodes), arrayLength(&instances), arrayLength(&triangles), arrayLength(&materials));
@@ -197,7 +198,7 @@ fn every_dispatch_sees_its_own_parameters_and_the_frame_of_its_submit() {
         band_rows: HEIGHT - 3,
         first_block: i % 13,
         block_count: 1 + i % 5,
-        block_stride: 7,
+        tile_stride: 7,
         canary_turns: 1000 + i,
     };
     // More dispatches in one submit than there was room for, then fewer with another frame.
@@ -209,7 +210,7 @@ fn every_dispatch_sees_its_own_parameters_and_the_frame_of_its_submit() {
     for (d, seed) in first.iter().map(|d| (d, 3)).chain(second.iter().map(|d| (d, 8))) {
         let pixel = d.sample_index + 3 * WIDTH;
         let expected =
-            [d.pass_index, d.first_block, d.block_stride, d.canary_turns, d.band_row, d.band_rows, d.block_count, seed];
+            [d.pass_index, d.first_block, d.tile_stride, d.canary_turns, d.band_row, d.band_rows, d.block_count, seed];
         assert_eq!(words(&film, pixel as usize), expected, "dispatch {}", d.sample_index);
     }
 }
@@ -301,9 +302,9 @@ fn dispatches_that_do_not_fit_the_band_are_refused() {
         Dispatch { block_count: 6, ..right },
         Dispatch { first_block: 1, ..right },
         Dispatch { first_block: u32::MAX, ..right },
-        Dispatch { block_stride: 5, ..right },
-        Dispatch { block_stride: 0, ..right },
-        Dispatch { block_stride: 858_993_461, ..right },
+        Dispatch { tile_stride: 5, ..right },
+        Dispatch { tile_stride: 0, ..right },
+        Dispatch { tile_stride: 858_993_461, ..right },
     ];
     for dispatch in wrong {
         let result = renderer.submit(&frame, &[right, dispatch]);

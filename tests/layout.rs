@@ -88,7 +88,7 @@ fn rust_structs() -> Vec<Struct> {
             band_rows,
             first_block,
             block_count,
-            block_stride,
+            tile_stride,
             canary_turns,
         }),
         rust_struct!(Node { grid, children, x, y, z }),

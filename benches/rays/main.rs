@@ -9,6 +9,7 @@ mod mesh;
 use clap::Parser;
 use embree::Embree;
 use glam::{UVec2, Vec3};
+use gpu_trace::blocks::BlockOrder;
 use gpu_trace::cpu::bindings::Bindings;
 use gpu_trace::cpu::geometry::bvh::scene_intersect;
 use gpu_trace::cpu::geometry::triangle::triangle_geometric_normal;
@@ -128,7 +129,8 @@ impl Gpu {
     }
 
     fn trace(&mut self) -> Result<Traced> {
-        let block_count = (EDGE / 8).pow(2) / SUBMITS;
+        let order = BlockOrder::new(EDGE, EDGE);
+        let block_count = order.places() / SUBMITS;
         let start = Instant::now();
         let mut rays = 0;
         for part in 0..SUBMITS {
@@ -136,7 +138,7 @@ impl Gpu {
                 band_rows: EDGE,
                 first_block: part * block_count,
                 block_count,
-                block_stride: block_count / 2 + 1,
+                tile_stride: order.stride(),
                 ..Dispatch::default()
             };
             let tally = self.renderer.submit(&self.buffers.frame, &[dispatch])?;

@@ -22,9 +22,8 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if (group.x >= dispatch.block_count) {
         return;
     }
-    let block = dispatch.first_block + (group.x * dispatch.block_stride) % dispatch.block_count;
-    let blocks_across = frame.image_size.x / 8u;
-    let pixel = vec2<u32>(block % blocks_across, block / blocks_across) * 8u + pixel_in_block(lane);
+    let place = dispatch.first_block + group.x;
+    let pixel = block_at(place) * BLOCK_EDGE + pixel_in_block(lane);
     tally = Tally(0u, vec4<u32>(0u));
     random_state = pcg(pixel.x + pixel.y * frame.image_size.x);
 
@@ -61,7 +60,7 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             bounce = 0u;
         }
     }
-    atomicAdd(&status.rays[block % RAY_SLOTS], tally.rays[0]);
+    atomicAdd(&status.rays[place % RAY_SLOTS], tally.rays[0]);
     if (tally.flags != 0u) {
         atomicOr(&status.flags, tally.flags);
     }

@@ -1,20 +1,12 @@
 // One pass of one camera sample for each pixel of a run of 8 x 8 blocks.
 
-// Pixel in its block: eight neighbouring lanes share a patch of 4 x 2 pixels, so that they walk the same nodes.
-fn pixel_in_block(lane: u32) -> vec2<u32> {
-    return vec2<u32>((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 3u) & 6u));
-}
-
 @compute @workgroup_size(64)
 fn render(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     if (group.x >= dispatch.block_count) {
         return;
     }
-    // Lavapipe's threads, and the processors of a GPU, take contiguous runs of workgroups: the stride gives each a
-    // share of every part of the picture.
-    let block = dispatch.first_block + (group.x * dispatch.block_stride) % dispatch.block_count;
-    let blocks_across = (frame.image_size.x + 7u) / 8u;
-    let in_band = vec2<u32>(block % blocks_across, block / blocks_across) * 8u + pixel_in_block(lane);
+    let place = dispatch.first_block + group.x;
+    let in_band = block_at(place) * BLOCK_EDGE + pixel_in_block(lane);
     if (in_band.x >= frame.image_size.x || in_band.y >= dispatch.band_rows) {
         return;
     }
@@ -42,7 +34,7 @@ fn render(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_ind
         atomicOr(&status.flags, tally.flags);
     }
     // Counters are spread over slots, since all invocations add to them.
-    let slot = block % RAY_SLOTS;
+    let slot = place % RAY_SLOTS;
     for (var kind = 0u; kind < RAY_KINDS; kind++) {
         if (tally.rays[kind] > 0u) {
             atomicAdd(&status.rays[kind * RAY_SLOTS + slot], tally.rays[kind]);

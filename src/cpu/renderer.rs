@@ -1,5 +1,6 @@
 //! The native renderer: the kernel's work, block by block, on all cores.
 
+use crate::blocks::{BLOCK_EDGE, BlockOrder};
 use crate::cpu::bindings::Bindings;
 use crate::cpu::camera::camera_ray;
 use crate::cpu::film::film_add;
@@ -12,25 +13,35 @@ use crate::{Error, Result};
 use glam::UVec2;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Arc;
-
-const BLOCK_EDGE: u32 = 8;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// One 8 × 8 block of the film, rows from the top.
 #[derive(Clone)]
 struct FilmBlock([FilmPixel; (BLOCK_EDGE * BLOCK_EDGE) as usize]);
+
+fn lock(block: &Mutex<FilmBlock>) -> MutexGuard<'_, FilmBlock> {
+    // Sums are whole at any time, whatever may have panicked.
+    block.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Renders on the CPU with rayon's threads; needs no driver. The reference for the GPU.
 #[derive(Default)]
 pub struct CpuRenderer {
     scene: Arc<SceneBuffers>,
     rows: Range<u32>,
-    blocks: Vec<FilmBlock>,
+    /// Along the rows of the band. A dispatch takes each once, so that no lock is waited for.
+    blocks: Vec<Mutex<FilmBlock>>,
 }
 
 impl CpuRenderer {
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// The block in a column and row of blocks of the band, if it lies in it.
+    fn block(&self, block: UVec2) -> Option<&Mutex<FilmBlock>> {
+        let across = self.scene.frame.image_size.x.div_ceil(BLOCK_EDGE);
+        if block.x >= across { None } else { self.blocks.get((block.y * across + block.x) as usize) }
     }
 }
 
@@ -49,7 +60,7 @@ impl Renderer for CpuRenderer {
         let count = size.x.div_ceil(BLOCK_EDGE) as usize * (rows.end - rows.start).div_ceil(BLOCK_EDGE) as usize;
         let empty = FilmBlock([FilmPixel::default(); (BLOCK_EDGE * BLOCK_EDGE) as usize]);
         self.blocks.clear();
-        self.blocks.resize(count, empty);
+        self.blocks.resize_with(count, || Mutex::new(empty.clone()));
         self.rows = rows;
         Ok(())
     }
@@ -58,18 +69,22 @@ impl Renderer for CpuRenderer {
         let scene = Bindings::new(&self.scene, frame);
         let mut tally = Tally::default();
         for dispatch in dispatches {
-            let run = dispatch.first_block as usize..(dispatch.first_block + dispatch.block_count) as usize;
-            let Some(blocks) = self.blocks.get_mut(run) else {
+            let run = dispatch.first_block..dispatch.first_block.saturating_add(dispatch.block_count);
+            let order = BlockOrder::new(frame.image_size.x, dispatch.band_rows);
+            if run.end > order.places() || dispatch.band_rows != self.rows.end - self.rows.start {
                 return Err(Error::Kernel(format!("blocks {dispatch:?} lie outside the band")));
+            }
+            let sum = |mut sum: Tally, part: Tally| {
+                sum += part;
+                sum
             };
-            tally += blocks
-                .par_iter_mut()
-                .enumerate()
-                .map(|(offset, block)| render_block(&scene, dispatch, dispatch.first_block + offset as u32, block))
-                .reduce(Tally::default, |mut sum, part| {
-                    sum += part;
-                    sum
-                });
+            tally += run
+                .into_par_iter()
+                .map(|place| {
+                    let block = order.block_at(place, dispatch.tile_stride);
+                    self.block(block).map_or_else(Tally::default, |film| render_block(&scene, dispatch, block, film))
+                })
+                .reduce(Tally::default, sum);
         }
         Ok(tally)
     }
@@ -77,12 +92,12 @@ impl Renderer for CpuRenderer {
     fn end_band(&mut self, film: &mut Film) -> Result<()> {
         let width = self.scene.frame.image_size.x;
         let height = self.rows.end - self.rows.start;
-        let blocks_across = width.div_ceil(BLOCK_EDGE);
-        let mut band = Vec::with_capacity(width as usize * height as usize);
-        for y in 0..height {
-            for x in 0..width {
-                let block = &self.blocks[(y / BLOCK_EDGE * blocks_across + x / BLOCK_EDGE) as usize];
-                band.push(block.0[(y % BLOCK_EDGE * BLOCK_EDGE + x % BLOCK_EDGE) as usize]);
+        let mut band = vec![FilmPixel::default(); width as usize * height as usize];
+        for (y, row) in (0..height).zip(band.chunks_exact_mut(width as usize)) {
+            for (x, pixels) in (0..width).step_by(BLOCK_EDGE as usize).zip(row.chunks_mut(BLOCK_EDGE as usize)) {
+                let Some(block) = self.block(UVec2::new(x, y) / BLOCK_EDGE) else { continue };
+                let first = (y % BLOCK_EDGE * BLOCK_EDGE) as usize;
+                pixels.copy_from_slice(&lock(block).0[first..first + pixels.len()]);
             }
         }
         film.add_band(self.rows.start, &band);
@@ -91,10 +106,10 @@ impl Renderer for CpuRenderer {
 }
 
 /// One pass of one camera sample for each pixel of a block; what the kernel in `shaders/kernels/render.wgsl` does.
-fn render_block(scene: &Bindings, dispatch: &Dispatch, block: u32, film: &mut FilmBlock) -> Tally {
+fn render_block(scene: &Bindings, dispatch: &Dispatch, block: UVec2, film: &Mutex<FilmBlock>) -> Tally {
     let mut tally = Tally::default();
-    let blocks_across = scene.frame.image_size.x.div_ceil(BLOCK_EDGE);
-    let corner = UVec2::new(block % blocks_across, block / blocks_across) * BLOCK_EDGE;
+    let mut film = lock(film);
+    let corner = block * BLOCK_EDGE;
     for y in 0..BLOCK_EDGE.min(dispatch.band_rows - corner.y) {
         for x in 0..BLOCK_EDGE.min(scene.frame.image_size.x - corner.x) {
             let pixel = corner + UVec2::new(x, y + dispatch.band_row);

@@ -4,6 +4,7 @@ use super::buffers::{SceneStorage, create, fit};
 use super::device::Device;
 use super::pipeline::{Pipeline, binding};
 use super::readback;
+use crate::blocks::BlockOrder;
 use crate::film::Film;
 use crate::flatten::SceneBuffers;
 use crate::layout::{self, Dispatch, FilmPixel, Frame, Status};
@@ -13,9 +14,6 @@ use glam::UVec2;
 use std::num::NonZeroU64;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Edge of a block, pixels; a workgroup has one invocation for each pixel of its block.
-pub(super) const BLOCK_EDGE: u32 = 8;
 
 /// Bytes from one `Dispatch` to the next: dynamic offsets are multiples of what WebGPU guarantees to be enough.
 const SLOT: u64 = 256;
@@ -91,11 +89,6 @@ impl Session {
         self.run(frame, &[(Dispatch::default(), 1)]).map(|_| ())
     }
 
-    /// Width and height of the picture, pixels.
-    pub fn image_size(&self) -> UVec2 {
-        self.counts.image_size
-    }
-
     /// Takes these rows of the picture in hand, with every sum 0.
     pub fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {
         if rows.start >= rows.end || rows.end > self.counts.image_size.y {
@@ -158,9 +151,10 @@ impl Session {
             return Err(format!("{bounded_count} bounded instances with {nodes} nodes, {pass_count} passes"));
         }
         let rows = self.band.end - self.band.start;
-        let blocks = image_size.x.div_ceil(BLOCK_EDGE) * rows.div_ceil(BLOCK_EDGE);
+        let order = BlockOrder::new(image_size.x, rows);
+        let blocks = order.places();
         for dispatch in dispatches {
-            let Dispatch { first_block, block_count, block_stride, .. } = *dispatch;
+            let Dispatch { first_block, block_count, tile_stride, .. } = *dispatch;
             if (dispatch.band_row, dispatch.band_rows) != (self.band.start, rows) {
                 let end = u64::from(dispatch.band_row) + u64::from(dispatch.band_rows);
                 return Err(format!("rows {}..{end} where {:?} are in hand", dispatch.band_row, self.band));
@@ -170,9 +164,8 @@ impl Session {
                 return Err(format!("blocks {first_block}..{end} of {blocks}"));
             }
             // Otherwise two workgroups would render one block at the same time.
-            let no_overflow = u64::from(block_count) * u64::from(block_stride) <= u64::from(u32::MAX);
-            if block_count > 1 && !(no_overflow && greatest_common_divisor(block_count, block_stride) == 1) {
-                return Err(format!("stride {block_stride} over {block_count} blocks"));
+            if !order.visits_all(tile_stride) {
+                return Err(format!("a stride of {tile_stride} tiles over {blocks} blocks"));
             }
         }
         Ok(())
@@ -268,11 +261,4 @@ fn bind(
     });
     device.check()?;
     Ok(bind_group)
-}
-
-fn greatest_common_divisor(mut a: u32, mut b: u32) -> u32 {
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
 }

@@ -1,7 +1,7 @@
 //! The GPU's side of the sample loop.
 
 use super::device::Device;
-use super::dispatch::{BLOCK_EDGE, Session};
+use super::dispatch::Session;
 use super::pipeline::Pipeline;
 use crate::film::Film;
 use crate::flatten::{FeatureSet, SceneBuffers};
@@ -13,6 +13,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
+
+/// So many that the strides from tile to tile are within 32 bits.
+const MAX_BAND_PIXELS: u64 = 1 << 25;
 
 /// How to run the kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,11 +117,7 @@ impl Renderer for GpuRenderer {
     fn max_band_pixels(&self) -> u64 {
         let limits = self.device.limits();
         let bytes = limits.storage_binding.min(limits.buffer);
-        // One dispatch can take the whole band. Rows of blocks are counted, as the last block of a row may hang over.
-        let width = self.session.as_ref().map_or(BLOCK_EDGE, |session| session.image_size().x).max(1);
-        let block_rows = u64::from(limits.workgroups / width.div_ceil(BLOCK_EDGE));
-        let in_one_dispatch = block_rows * u64::from(BLOCK_EDGE) * u64::from(width);
-        (bytes / size_of::<FilmPixel>() as u64).min(in_one_dispatch)
+        (bytes / size_of::<FilmPixel>() as u64).min(MAX_BAND_PIXELS)
     }
 
     fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {
