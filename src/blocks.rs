@@ -34,14 +34,13 @@ impl BlockOrder {
         self.tiles * TILE_BLOCKS
     }
 
-    /// A stride for [`block_at`](Self::block_at): near the golden section of the number of tiles, and coprime to it.
-    /// Multiples modulo that number visit every tile once, and any few in a row are spread over the band.
+    /// A stride for [`block_at`](Self::block_at): near the golden section of the number of tiles where 32 bits hold its
+    /// steps, and coprime to it. Multiples modulo that number visit every tile once, and any few in a row are spread
+    /// over the band.
     pub fn stride(self) -> u32 {
-        let mut stride = (f64::from(self.tiles) * 0.618_034) as u32 | 1;
-        while !self.visits_all(stride) {
-            stride += 2;
-        }
-        stride
+        let golden = (f64::from(self.tiles) * 0.618_034) as u32;
+        let most = golden.min(u32::MAX / self.tiles.max(1)).max(1);
+        (1..=most).rev().find(|&stride| self.visits_all(stride)).unwrap_or(1)
     }
 
     /// Whether a stride leads to every tile, by steps that 32 bits hold.
@@ -70,7 +69,7 @@ mod tests {
 
     #[test]
     fn every_block_has_one_place() {
-        for (width, rows) in [(1, 1), (37, 29), (320, 240), (641, 8), (33, 700), (1920, 1080)] {
+        for (width, rows) in [(1, 1), (37, 29), (320, 240), (641, 8), (33, 700), (1920, 1080), (8000, 9000)] {
             let order = BlockOrder::new(width, rows);
             let stride = order.stride();
             assert!(order.visits_all(stride));
@@ -79,6 +78,15 @@ mod tests {
             let across = UVec2::new(width, rows).map(|pixels| pixels.div_ceil(BLOCK_EDGE));
             let inside = blocks.iter().filter(|block| block.cmplt(across).all()).count();
             assert_eq!(inside as u32, across.x * across.y, "{width} x {rows}");
+        }
+    }
+
+    #[test]
+    fn huge_bands_have_strides_too() {
+        for edge in [1 << 14, 1 << 16, 1 << 19] {
+            let order = BlockOrder::new(edge, edge);
+            let stride = order.stride();
+            assert!(order.visits_all(stride) && stride > 1, "{edge}: {stride}");
         }
     }
 

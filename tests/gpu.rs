@@ -125,10 +125,10 @@ fn sums_of_every_pixel_come_back_however_the_work_is_cut() {
 
 #[test]
 fn strides_only_change_the_order() {
-    // 20 blocks, all strides that are odd and coprime to 20.
+    // Two tiles: any odd stride.
     let mut renderer = pattern_renderer(false);
-    for stride in [1, 3, 7, 9, 11, 13, 17, 19, 21, 1_000_003] {
-        let film = pattern_film(&mut renderer, HEIGHT, 20, |_| stride, &[1]);
+    for stride in [1, 3, 7, 21, 1_000_003] {
+        let film = pattern_film(&mut renderer, HEIGHT, 32, |_| stride, &[1]);
         assert!(film == expected_film(&[1], 3), "stride {stride}");
     }
 }
@@ -274,24 +274,13 @@ fn a_scene_larger_than_the_device_binds_is_an_error_that_names_the_limit() {
     }
 }
 
-#[test]
-fn one_dispatch_can_take_the_largest_band() {
-    let mut renderer = renderer(open_device(), PATTERN, "pattern", false);
-    for width in [1, 8, 9, 1001, 16_384] {
-        let frame = Frame { image_size: UVec2::new(width, 1 << 14), ..scene().frame };
-        renderer.prepare(Arc::new(SceneBuffers { frame, ..scene() })).unwrap();
-        let rows = renderer.max_band_pixels() / u64::from(width) / 8 * 8;
-        let blocks = u64::from(width.div_ceil(8)) * rows / 8;
-        assert!(rows > 0 && blocks <= u64::from(renderer.device().limits().workgroups), "width {width}: {rows} rows");
-    }
-}
-
 /// The kernel runs unchecked, so that the host must not let through what would make it leave its buffers.
 #[test]
 fn dispatches_that_do_not_fit_the_band_are_refused() {
     let mut renderer = pattern_renderer(false);
     let frame = scene().frame;
-    let right = runs(8..16, 5, |_| 3, 0)[0];
+    // Two tiles of 16 blocks.
+    let right = runs(8..16, 32, |_| 3, 0)[0];
     assert!(renderer.submit(&frame, &[right]).is_err(), "no band was begun");
     renderer.begin_band(8..16).unwrap();
     renderer.submit(&frame, &[right]).unwrap();
@@ -299,12 +288,12 @@ fn dispatches_that_do_not_fit_the_band_are_refused() {
         Dispatch { band_row: 0, ..right },
         Dispatch { band_rows: 9, ..right },
         Dispatch { band_row: 7, band_rows: u32::MAX, ..right },
-        Dispatch { block_count: 6, ..right },
+        Dispatch { block_count: 33, ..right },
         Dispatch { first_block: 1, ..right },
         Dispatch { first_block: u32::MAX, ..right },
-        Dispatch { tile_stride: 5, ..right },
+        Dispatch { tile_stride: 2, ..right },
         Dispatch { tile_stride: 0, ..right },
-        Dispatch { tile_stride: 858_993_461, ..right },
+        Dispatch { tile_stride: 2_147_483_649, ..right },
     ];
     for dispatch in wrong {
         let result = renderer.submit(&frame, &[right, dispatch]);

@@ -71,6 +71,8 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         }
     }
 
+    let only_meshes = HAS_MESH
+        && !(HAS_SPHERE || HAS_CUBE || HAS_CYLINDER || HAS_CONE || HAS_TORUS || HAS_MIST || HAS_SHADOWLESS);
     for (var turn = 0u; ; turn++) {
         if turn == TRAVERSAL_TURNS {
             tally.flags |= STATUS_LOOP_BOUND;
@@ -105,6 +107,10 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         group = vec2<u32>(node.children.x, select(0u, inner | (node.grid.w >> 24u), inner != 0u));
         var primitives_left = bits & GROUP_PRIMITIVES;
         var meshes = 0u;
+        if only_meshes && return_height == NONE {
+            meshes = primitives_left;
+            primitives_left = 0u;
+        }
         while primitives_left != 0u {
             let place = firstLeadingBit(primitives_left);
             primitives_left &= ~(1u << place);

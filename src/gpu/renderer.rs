@@ -14,9 +14,6 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// So many that the strides from tile to tile are within 32 bits.
-const MAX_BAND_PIXELS: u64 = 1 << 25;
-
 /// How to run the kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpuOptions {
@@ -117,7 +114,7 @@ impl Renderer for GpuRenderer {
     fn max_band_pixels(&self) -> u64 {
         let limits = self.device.limits();
         let bytes = limits.storage_binding.min(limits.buffer);
-        (bytes / size_of::<FilmPixel>() as u64).min(MAX_BAND_PIXELS)
+        bytes / size_of::<FilmPixel>() as u64
     }
 
     fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {
