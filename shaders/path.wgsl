@@ -1,12 +1,21 @@
 // The tree of rays under one camera ray, walked with an explicit stack. A hit of a camera ray may split; deeper, each
 // choice takes one ray by Russian roulette, so that the stack never holds more than the splits of one hit.
 
-// The splits of one hit in one pass: glossy rays (`MAX_GLOSSY_SAMPLES` in src/flatten/work.rs) and a refracted one.
-const RAY_STACK_SIZE: u32 = 5u;
+// The splits of one hit in one pass, glossy rays (`MAX_GLOSSY_SAMPLES` in src/flatten/work.rs) and a refracted one, but
+// for the next ray.
+const RAY_STACK_SIZE: u32 = 4u;
 var<private> ray_stack: array<Ray, RAY_STACK_SIZE>;
 var<private> ray_stack_size: u32;
+// The ray that comes next, if it is known: most hits spawn one ray, which the way through memory would cost dear.
+var<private> next_ray: Ray;
+var<private> has_next_ray: bool;
 
 fn push_ray(ray: Ray) {
+    if (!has_next_ray) {
+        next_ray = ray;
+        has_next_ray = true;
+        return;
+    }
     if (ray_stack_size == RAY_STACK_SIZE) {
         tally.flags |= STATUS_STACK_FULL;
         return;
@@ -154,6 +163,7 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
     var radiance = vec3<f32>(0.0);
     var coverage = 1.0;
     ray_stack_size = 0u;
+    has_next_ray = false;
     push_ray(Ray(
         camera.origin,
         camera.origin,
@@ -175,8 +185,8 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
     flight.going = false;
     let most_samples = max(frame.light_samples, frame.deep_light_samples);
     let most_legs = select(0u, MIST_CROSSINGS + 1u, HAS_MIST);
-    var turns_left = (1u + RAY_STACK_SIZE * frame.max_depth) * (1u + most_legs + most_samples);
-    while ((samples.x < samples.y || flight.going || ray_stack_size > 0u) && turns_left > 0u) {
+    var turns_left = (1u + (1u + RAY_STACK_SIZE) * frame.max_depth) * (1u + most_legs + most_samples);
+    while ((samples.x < samples.y || flight.going || has_next_ray || ray_stack_size > 0u) && turns_left > 0u) {
         turns_left--;
         let lighting = samples.x < samples.y;
         let flying = HAS_MIST && flight.going;
@@ -203,8 +213,13 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
             direction = ray.direction;
             t_max = min(free, flight.left);
         } else {
-            ray_stack_size--;
-            ray = ray_stack[ray_stack_size];
+            if (has_next_ray) {
+                ray = next_ray;
+                has_next_ray = false;
+            } else {
+                ray_stack_size--;
+                ray = ray_stack[ray_stack_size];
+            }
             origin = ray.origin;
             direction = ray.direction;
         }
@@ -282,7 +297,7 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
             spawn_rays(surface, material, ray, cone_width);
         }
     }
-    if (samples.x < samples.y || flight.going || ray_stack_size > 0u) {
+    if (samples.x < samples.y || flight.going || has_next_ray || ray_stack_size > 0u) {
         tally.flags |= STATUS_LOOP_BOUND;
     }
     return vec4<f32>(radiance, coverage);
