@@ -20,6 +20,7 @@ use gpu_trace::layout::Dispatch;
 use gpu_trace::renderer::{Renderer, Tally};
 use gpu_trace::shader::{PARTS, Part, Program};
 use rayon::prelude::*;
+use std::f32::consts::TAU;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
@@ -191,7 +192,7 @@ fn walk(scene: &Bindings, pixel: UVec2) -> u64 {
                 normal = -normal;
             }
             origin += hit.t * direction + 1e-3 * normal;
-            let phi = 6.283_185_3 * uniform(&mut state);
+            let phi = TAU * uniform(&mut state);
             let z = 2.0 * uniform(&mut state) - 1.0;
             let sine = (1.0 - z * z).max(0.0).sqrt();
             direction = (normal + 0.999 * Vec3::new(sine * phi.cos(), sine * phi.sin(), z)).normalize();

@@ -3,12 +3,17 @@
 //! Every figure comes from a process of its own that renders one scene once on one device, after a warm-up that is left
 //! out, so that peak memory is that scene's and a slow minute of the machine meets all devices alike.
 
+mod circumstances;
 mod convergence;
 mod measurement;
 mod peers;
+mod plot;
+mod reference;
 mod scene;
 mod table;
+mod triangles;
 
+use circumstances::Circumstances;
 use clap::Parser;
 use measurement::Measurement;
 use std::path::PathBuf;
@@ -21,14 +26,17 @@ const EXAMPLES: &str = "\
 Examples:
   benches/run                                  all scenes on software Vulkan or the GPU, and on the CPU
   benches/run --scenes primitives,glass --runs 7 --json bench.json
-  benches/run --convergence                    how fast the error falls, and time to a given error; minutes
-  benches/run --scenes primitives --peers      POV-Ray on the same scene, in turn with ours";
+  benches/run --scenes primitives --peers      POV-Ray on the same scene, in turn with ours
+  benches/run --convergence                    how fast the error of soft shadows and depth of field falls
+  benches/run --convergence --scenes glass --size 160x120 --rmse 0.01    time to a given error
+  benches/run --triangles                      rays through meshes of ten thousand to ten million triangles";
 
 /// Measure how fast gpu-trace renders the scenes of scenes/bench
 #[derive(Debug, Parser)]
 #[command(name = "benches/run", after_help = EXAMPLES)]
 struct Arguments {
-    /// Names of scenes in scenes/bench, with commas between [default: all]
+    /// Names of scenes in scenes/bench, or waterfall, with commas between [default: all; with --convergence, those
+    /// of scenes/bench/convergence]
     #[arg(long, value_delimiter = ',')]
     scenes: Vec<String>,
 
@@ -48,10 +56,22 @@ struct Arguments {
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
 
-    /// Compare with a reference of 4096 samples: the error at 1, 2, 4, … samples, the slope, and the plot
-    /// target/bench/convergence.svg
+    /// Compare with a reference of 4096 samples: the error at 1, 2, 4, … samples, its slope, the time to a given
+    /// error, and a plot
     #[arg(long)]
     convergence: bool,
+
+    /// Errors (RMSE of sRGB-encoded values) whose times are asked for, with --convergence
+    #[arg(long, value_delimiter = ',', default_values_t = [0.02, 0.01, 0.005])]
+    rmse: Vec<f64>,
+
+    /// Where the plot goes, with --convergence
+    #[arg(long, value_name = "FILE.svg", default_value = "target/bench/convergence.svg")]
+    plot: PathBuf,
+
+    /// Measure rays through one mesh of 10 thousand, 100 thousand, 1, 2 and 10 million triangles
+    #[arg(long, conflicts_with_all = ["convergence", "scenes", "peers"])]
+    triangles: bool,
 
     /// Shadow rays a light at the first hit in place of the scene's, with --convergence
     #[arg(long, requires = "convergence", value_parser = clap::value_parser!(u32).range(1..))]
@@ -90,10 +110,25 @@ fn run(arguments: &Arguments) -> Result<()> {
         println!("{}", serde_json::to_string(&measurement)?);
         return Ok(());
     }
-    let names = if arguments.scenes.is_empty() { scene::all()? } else { arguments.scenes.clone() };
-    if arguments.convergence {
-        return convergence::report(&names, &arguments.devices, arguments.peers, arguments.shadow);
+    if arguments.triangles {
+        return triangles::report(&arguments.devices, arguments.runs);
     }
+    if arguments.convergence {
+        let scenes = match arguments.scenes.as_slice() {
+            [] => ["convergence/soft-shadow", "convergence/depth-of-field"].map(str::to_owned).to_vec(),
+            names => names.to_vec(),
+        };
+        return convergence::report(&convergence::Request {
+            scenes,
+            devices: arguments.devices.clone(),
+            with_peers: arguments.peers,
+            shadow: arguments.shadow,
+            size: arguments.size,
+            errors: arguments.rmse.clone(),
+            plot: arguments.plot.clone(),
+        });
+    }
+    let names = if arguments.scenes.is_empty() { scene::all()? } else { arguments.scenes.clone() };
     let mut measurements = Vec::new();
     for name in &names {
         for run in 0..arguments.runs {
@@ -109,7 +144,9 @@ fn run(arguments: &Arguments) -> Result<()> {
         peers::report(&names, &medians, arguments.runs)?;
     }
     if let Some(path) = &arguments.json {
-        std::fs::write(path, serde_json::to_vec_pretty(&medians)?)?;
+        let figures = serde_json::json!({ "circumstances": Circumstances::now(), "medians": medians });
+        std::fs::write(path, serde_json::to_vec_pretty(&figures)?)
+            .map_err(|error| format!("{}: {error}", path.display()))?;
     }
     Ok(())
 }

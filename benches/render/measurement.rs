@@ -30,6 +30,8 @@ pub struct Measurement {
     pub script_seconds: f64,
     /// From the scene to the buffers, building the hierarchies.
     pub flatten_seconds: f64,
+    /// The share of that in which triangles were packed and the hierarchies over them built.
+    pub mesh_seconds: f64,
     /// Compiling and the first dispatch, with whatever the driver's cache on disk held.
     pub first_dispatch_seconds: f64,
     pub longest_submit_seconds: f64,
@@ -71,6 +73,7 @@ impl Measurement {
             seconds: of(|run| run.seconds),
             script_seconds: of(|run| run.script_seconds),
             flatten_seconds: of(|run| run.flatten_seconds),
+            mesh_seconds: of(|run| run.mesh_seconds),
             first_dispatch_seconds: of(|run| run.first_dispatch_seconds),
             longest_submit_seconds: group.iter().map(|run| run.longest_submit_seconds).fold(0.0, f64::max),
             peak_memory: of(|run| run.peak_memory as f64) as u64,
@@ -118,6 +121,7 @@ pub fn measure(name: &str, device: &str, size: Option<[u32; 2]>, samples: Option
         seconds,
         script_seconds,
         flatten_seconds: buffers.statistics.seconds,
+        mesh_seconds: buffers.statistics.mesh_seconds,
         first_dispatch_seconds: warm_up.warmup_seconds,
         longest_submit_seconds,
         peak_memory: peak_memory().unwrap_or(0),

@@ -5,14 +5,14 @@ use crate::measurement::Measurement;
 pub fn print(measurements: &[Measurement]) {
     println!(
         "| scene | device | Mray/s | s | camera, shadow, reflected, refracted rays (M) | first dispatch s | script s \
-         | flatten s | longest submit ms | peak MiB |"
+         | flatten s | of that BVH s | longest submit ms | peak MiB |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
     for run in measurements {
         let millions = |rays: u64| format!("{:.2}", rays as f64 / 1e6);
         let rays = [run.camera_rays, run.shadow_rays, run.reflected_rays, run.refracted_rays].map(millions);
         println!(
-            "| {} {}x{}, {} samples | {} | {:.2} | {:.2} | {} | {:.2} | {:.2} | {:.3} | {:.0} | {} |",
+            "| {} {}x{}, {} samples | {} | {:.2} | {:.2} | {} | {:.2} | {:.2} | {:.3} | {:.3} | {:.0} | {} |",
             run.scene,
             run.width,
             run.height,
@@ -24,6 +24,7 @@ pub fn print(measurements: &[Measurement]) {
             run.first_dispatch_seconds,
             run.script_seconds,
             run.flatten_seconds,
+            run.mesh_seconds,
             run.longest_submit_seconds * 1e3,
             run.peak_memory >> 20,
         );
