@@ -60,11 +60,13 @@ struct Dispatch {
     // The band of rows that the film buffer holds: first row and number of rows, pixels.
     band_row: u32,
     band_rows: u32,
-    // The blocks, by their places in the order of `block_at` in blocks.wgsl: workgroup g takes the one at
-    // first_block + g. The stride from tile to tile is coprime to the number of tiles.
+    // The blocks, by their places in the order of `block_at` in blocks.wgsl; the stride from tile to tile is coprime to
+    // the number of tiles.
     first_block: u32,
     block_count: u32,
     tile_stride: u32,
+    // Processors that take contiguous portions of the workgroups, see `place_of` in blocks.wgsl; at least 1.
+    portions: u32,
     // Turns of the loop that every invocation ends with; fewer made means that the driver cut loops short.
     canary_turns: u32,
 };

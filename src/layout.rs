@@ -50,6 +50,7 @@ pub struct Dispatch {
     pub first_block: u32,
     pub block_count: u32,
     pub tile_stride: u32,
+    pub portions: u32,
     pub canary_turns: u32,
 }
 

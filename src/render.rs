@@ -21,8 +21,8 @@ const FIRST_RUN_BLOCKS: u64 = 32;
 const GROWTH: f64 = 4.0;
 /// Dispatches in one submit.
 const MAX_DISPATCHES: usize = 256;
-/// Blocks in one dispatch: WebGPU's limit of workgroups in a row.
-const MAX_BLOCKS: u64 = 65_535;
+/// Blocks in one dispatch: below WebGPU's limit of workgroups in a row, 65,535.
+const MAX_BLOCKS: u64 = 1 << 15;
 /// Turns of the loop that shows whether the driver cuts loops short.
 const CANARY_TURNS: u32 = 4;
 
@@ -227,6 +227,7 @@ impl Job<'_> {
         let total = samples * passes * blocks;
         let band_share = f64::from(band_rows) * f64::from(self.frame.image_size.x) / self.pixels_total as f64;
         let done_before = self.pixels_before as f64 / self.pixels_total as f64 * samples as f64;
+        let portions = self.renderer.portions().max(1);
         let mut dispatches = Vec::new();
         let mut next = 0;
         while next < total {
@@ -247,6 +248,7 @@ impl Job<'_> {
                     first_block: block as u32,
                     block_count: count as u32,
                     tile_stride,
+                    portions,
                     canary_turns: CANARY_TURNS,
                 });
                 next += count;

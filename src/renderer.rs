@@ -57,6 +57,11 @@ pub trait Renderer {
     /// Adds the sums of the band to the film.
     fn end_band(&mut self, film: &mut Film) -> Result<()>;
 
+    /// Processors that each take a contiguous portion of a dispatch's workgroups, however long the others have to do.
+    fn portions(&self) -> u32 {
+        1
+    }
+
     /// What `prepare` has done so far; a renderer without programs and uploads counts nothing.
     fn prepare_counts(&self) -> PrepareCounts {
         PrepareCounts::default()

@@ -62,7 +62,7 @@ fn gpu_answers(buffers: &Arc<SceneBuffers>) -> Vec<Answer> {
         renderer.prepare(buffers.clone())?;
         renderer.begin_band(0..height)?;
         let block_count = (width * height).div_ceil(64);
-        let dispatch = Dispatch { block_count, tile_stride: 1, band_rows: height, ..Dispatch::default() };
+        let dispatch = Dispatch { block_count, tile_stride: 1, portions: 1, band_rows: height, ..Dispatch::default() };
         renderer.submit(&buffers.frame, &[dispatch])?;
         renderer.end_band(film)
     };

@@ -19,8 +19,9 @@ const HEIGHT: u32 = 29;
 const PATTERN: &str = "
 @compute @workgroup_size(64)
 fn pattern(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    if (group.x >= dispatch.block_count) { return; }
-    let block = block_at(dispatch.first_block + group.x);
+    let place = place_of(group.x);
+    if (place >= dispatch.first_block + dispatch.block_count) { return; }
+    let block = block_at(place);
     let x = block.x * 8u + lane % 8u;
     let y = block.y * 8u + lane / 8u;
     if (x >= frame.image_size.x || y >= dispatch.band_rows) { return; }
@@ -88,6 +89,7 @@ fn runs(rows: std::ops::Range<u32>, run: u32, stride: impl Fn(u32) -> u32, sampl
             first_block,
             block_count,
             tile_stride: stride(blocks / TILE_BLOCKS),
+            portions: 1 + run % 5,
             canary_turns: 0,
         }
     };
@@ -198,6 +200,7 @@ fn every_dispatch_sees_its_own_parameters_and_the_frame_of_its_submit() {
         band_rows: HEIGHT - 3,
         first_block: i % 13,
         block_count: 1 + i % 5,
+        portions: 1,
         tile_stride: 7,
         canary_turns: 1000 + i,
     };
@@ -291,6 +294,8 @@ fn dispatches_that_do_not_fit_the_band_are_refused() {
         Dispatch { block_count: 33, ..right },
         Dispatch { first_block: 1, ..right },
         Dispatch { first_block: u32::MAX, ..right },
+        Dispatch { portions: 0, ..right },
+        Dispatch { portions: u32::MAX, ..right },
         Dispatch { tile_stride: 2, ..right },
         Dispatch { tile_stride: 0, ..right },
         Dispatch { tile_stride: 2_147_483_649, ..right },

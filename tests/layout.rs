@@ -89,6 +89,7 @@ fn rust_structs() -> Vec<Struct> {
             first_block,
             block_count,
             tile_stride,
+            portions,
             canary_turns,
         }),
         rust_struct!(Node { grid, children, x, y, z }),

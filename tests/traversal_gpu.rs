@@ -74,7 +74,7 @@ fn found_on_gpu(buffers: &SceneBuffers, rays: &[Ray], source: &str) -> Vec<Found
     let mut film = Film::new(64, rows);
     renderer.prepare(Arc::new(buffers)).unwrap_or_else(|error| panic!("{error}"));
     renderer.begin_band(0..rows).unwrap();
-    let dispatch = Dispatch { band_rows: rows, block_count: rows, tile_stride: 1, ..Dispatch::default() };
+    let dispatch = Dispatch { band_rows: rows, block_count: rows, tile_stride: 1, portions: 1, ..Dispatch::default() };
     renderer.submit(&frame, &[dispatch]).unwrap();
     renderer.end_band(&mut film).unwrap();
 

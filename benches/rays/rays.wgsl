@@ -19,10 +19,10 @@ fn uniform_number() -> f32 {
 
 @compute @workgroup_size(64)
 fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    if (group.x >= dispatch.block_count) {
+    let place = place_of(group.x);
+    if (place >= dispatch.first_block + dispatch.block_count) {
         return;
     }
-    let place = dispatch.first_block + group.x;
     let pixel = block_at(place) * BLOCK_EDGE + pixel_in_block(lane);
     tally = Tally(0u, vec4<u32>(0u));
     random_state = pcg(pixel.x + pixel.y * frame.image_size.x);

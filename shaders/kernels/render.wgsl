@@ -2,10 +2,10 @@
 
 @compute @workgroup_size(64)
 fn render(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    if (group.x >= dispatch.block_count) {
+    let place = place_of(group.x);
+    if (place >= dispatch.first_block + dispatch.block_count) {
         return;
     }
-    let place = dispatch.first_block + group.x;
     let in_band = block_at(place) * BLOCK_EDGE + pixel_in_block(lane);
     if (in_band.x >= frame.image_size.x || in_band.y >= dispatch.band_rows) {
         return;

@@ -86,7 +86,7 @@ impl Session {
 
     /// Runs the kernel without work: lavapipe and others compile at the first dispatch, not before.
     pub fn warm_up(&mut self, frame: &Frame) -> Result<()> {
-        self.run(frame, &[(Dispatch::default(), 1)]).map(|_| ())
+        self.run(frame, &[(Dispatch { portions: 1, ..Dispatch::default() }, 1)]).map(|_| ())
     }
 
     /// Takes these rows of the picture in hand, with every sum 0.
@@ -119,7 +119,7 @@ impl Session {
         }
         self.check(frame, dispatches)
             .map_err(|fault| Error::Kernel(format!("a dispatch that the kernel cannot run: {fault}")))?;
-        let runs: Vec<_> = dispatches.iter().map(|dispatch| (*dispatch, dispatch.block_count)).collect();
+        let runs: Vec<_> = dispatches.iter().map(|dispatch| (*dispatch, workgroups(dispatch) as u32)).collect();
         self.run(frame, &runs)
     }
 
@@ -154,14 +154,15 @@ impl Session {
         let order = BlockOrder::new(image_size.x, rows);
         let blocks = order.places();
         for dispatch in dispatches {
-            let Dispatch { first_block, block_count, tile_stride, .. } = *dispatch;
+            let Dispatch { first_block, block_count, tile_stride, portions, .. } = *dispatch;
             if (dispatch.band_row, dispatch.band_rows) != (self.band.start, rows) {
                 let end = u64::from(dispatch.band_row) + u64::from(dispatch.band_rows);
                 return Err(format!("rows {}..{end} where {:?} are in hand", dispatch.band_row, self.band));
             }
             let end = u64::from(first_block) + u64::from(block_count);
-            if end > u64::from(blocks) || block_count > self.device.limits().workgroups {
-                return Err(format!("blocks {first_block}..{end} of {blocks}"));
+            let workgroups = workgroups(dispatch);
+            if end > u64::from(blocks) || workgroups > u64::from(self.device.limits().workgroups) || portions == 0 {
+                return Err(format!("blocks {first_block}..{end} of {blocks} in {portions} portions"));
             }
             // Otherwise two workgroups would render one block at the same time.
             if !order.visits_all(tile_stride) {
@@ -212,6 +213,11 @@ impl Session {
         self.bind_group = bind(&self.device, &self.pipeline, &self.scene, others)?;
         Ok(())
     }
+}
+
+/// Workgroups of a dispatch: so many that each portion of them has the same number.
+fn workgroups(dispatch: &Dispatch) -> u64 {
+    u64::from(dispatch.block_count).next_multiple_of(u64::from(dispatch.portions.max(1)))
 }
 
 /// Sums the counters of each kind; the kernel spreads them over slots so that invocations seldom meet at one.

@@ -1,6 +1,6 @@
 //! The GPU's side of the sample loop.
 
-use super::device::Device;
+use super::device::{Device, DeviceKind};
 use super::dispatch::Session;
 use super::pipeline::Pipeline;
 use crate::film::Film;
@@ -115,6 +115,12 @@ impl Renderer for GpuRenderer {
         let limits = self.device.limits();
         let bytes = limits.storage_binding.min(limits.buffer);
         bytes / size_of::<FilmPixel>() as u64
+    }
+
+    fn portions(&self) -> u32 {
+        // Lavapipe has a thread for each core.
+        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get() as u32);
+        if self.device.description().kind == DeviceKind::Software { cores } else { 1 }
     }
 
     fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {

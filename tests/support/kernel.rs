@@ -51,7 +51,8 @@ fn evaluate(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     let mut run = || -> gpu_trace::Result<()> {
         renderer.prepare(Arc::new(buffers.clone()))?;
         renderer.begin_band(0..rows)?;
-        let dispatch = Dispatch { band_rows: rows, block_count: rows, tile_stride: 1, ..Dispatch::default() };
+        let dispatch =
+            Dispatch { band_rows: rows, block_count: rows, tile_stride: 1, portions: 1, ..Dispatch::default() };
         renderer.submit(&frame, &[dispatch])?;
         renderer.end_band(&mut film)
     };
