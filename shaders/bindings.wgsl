@@ -18,6 +18,8 @@ override HAS_CONE: bool = true;
 override HAS_TORUS: bool = true;
 override HAS_PLANE: bool = true;
 override HAS_MESH: bool = true;
+// Any bounded shape but meshes.
+override HAS_ANALYTIC: bool = true;
 override HAS_REFLECTION: bool = true;
 override HAS_REFRACTION: bool = true;
 override HAS_GLOSSY: bool = true;

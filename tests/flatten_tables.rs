@@ -120,7 +120,9 @@ fn features_are_those_of_the_scene() {
         features.overrides().into_iter().filter(|(_, value)| *value).map(|(name, _)| name).collect()
     };
     for (shape, name) in shapes.into_iter().zip(names) {
-        assert_eq!(on(flattened(&scene_of([(shape, DAffine3::IDENTITY)])).features), [name]);
+        let analytic = !["HAS_PLANE", "HAS_MESH"].contains(&name);
+        let expected: Vec<&str> = [name].into_iter().chain(analytic.then_some("HAS_ANALYTIC")).collect();
+        assert_eq!(on(flattened(&scene_of([(shape, DAffine3::IDENTITY)])).features), expected);
     }
     let with_material = |material| {
         let mut stage = Stage::new(8, 8);
@@ -129,14 +131,17 @@ fn features_are_those_of_the_scene() {
         on(flattened(&stage.finish()).features)
     };
 
-    assert_eq!(with_material(Material { glossy: 0.5, ..Material::default() }), ["HAS_CUBE"]);
-    assert_eq!(with_material(Material { reflection: 0.5, ..Material::default() }), ["HAS_CUBE", "HAS_REFLECTION"]);
+    assert_eq!(with_material(Material { glossy: 0.5, ..Material::default() }), ["HAS_CUBE", "HAS_ANALYTIC"]);
+    assert_eq!(
+        with_material(Material { reflection: 0.5, ..Material::default() }),
+        ["HAS_CUBE", "HAS_ANALYTIC", "HAS_REFLECTION"]
+    );
     let glossy = Material { reflection: 0.5, glossy: 0.1, ..Material::default() };
-    assert_eq!(with_material(glossy), ["HAS_CUBE", "HAS_REFLECTION", "HAS_GLOSSY"]);
+    assert_eq!(with_material(glossy), ["HAS_CUBE", "HAS_ANALYTIC", "HAS_REFLECTION", "HAS_GLOSSY"]);
     // Total internal reflection needs no reflective material.
     assert_eq!(
         with_material(Material { ior: Some(1.5), ..Material::default() }),
-        ["HAS_CUBE", "HAS_REFLECTION", "HAS_REFRACTION"]
+        ["HAS_CUBE", "HAS_ANALYTIC", "HAS_REFLECTION", "HAS_REFRACTION"]
     );
     let mut stage = Stage::new(8, 8);
     stage.scene.camera.lens_edge = 0.5;

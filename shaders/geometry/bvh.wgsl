@@ -71,8 +71,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         }
     }
 
-    let only_meshes = HAS_MESH
-        && !(HAS_SPHERE || HAS_CUBE || HAS_CYLINDER || HAS_CONE || HAS_TORUS || HAS_MIST || HAS_SHADOWLESS);
+    let only_meshes = HAS_MESH && !(HAS_ANALYTIC || HAS_MIST || HAS_SHADOWLESS);
     for (var turn = 0u; ; turn++) {
         if turn == TRAVERSAL_TURNS {
             tally.flags |= STATUS_LOOP_BOUND;

@@ -13,6 +13,8 @@ pub struct FeatureSet {
     pub torus: bool,
     pub plane: bool,
     pub mesh: bool,
+    /// Any bounded shape but meshes.
+    pub analytic: bool,
     /// A material that reflects, be it by total internal reflection.
     pub reflection: bool,
     /// A material with a refractive index.
@@ -44,6 +46,7 @@ impl FeatureSet {
         torus: false,
         plane: false,
         mesh: false,
+        analytic: false,
         reflection: false,
         refraction: false,
         glossy: false,
@@ -64,6 +67,7 @@ impl FeatureSet {
         torus: true,
         plane: true,
         mesh: true,
+        analytic: true,
         reflection: true,
         refraction: true,
         glossy: true,
@@ -94,6 +98,10 @@ impl FeatureSet {
             torus: has(layout::SHAPE_TORUS),
             plane: has(layout::SHAPE_PLANE),
             mesh: has(layout::SHAPE_MESH),
+            analytic: buffers
+                .instances
+                .iter()
+                .any(|instance| ![layout::SHAPE_PLANE, layout::SHAPE_MESH].contains(&instance.shape)),
             reflection: materials.iter().any(|material| material.reflection != 0.0 || material.ior != 0.0),
             refraction: materials.iter().any(|material| material.ior != 0.0),
             glossy: materials.iter().any(|material| material.reflection != 0.0 && material.glossy != 0.0),
@@ -122,6 +130,7 @@ impl FeatureSet {
             ("HAS_TORUS", self.torus),
             ("HAS_PLANE", self.plane),
             ("HAS_MESH", self.mesh),
+            ("HAS_ANALYTIC", self.analytic),
             ("HAS_REFLECTION", self.reflection),
             ("HAS_REFRACTION", self.refraction),
             ("HAS_GLOSSY", self.glossy),
