@@ -60,8 +60,10 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     var instance = 0u;
     var triangle_space: TriangleRay;
     var ray_origin = origin;
-    var inverse = inverse_direction(direction);
-    var octant = octant_bytes(direction);
+    let world_inverse = inverse_direction(direction);
+    let world_octant = octant_bytes(direction);
+    var inverse = world_inverse;
+    var octant = world_octant;
     // The group in hand: nodes, or instances of meshes. The root, to begin with.
     var group = vec2<u32>(0u, 0x80000000u);
     if HAS_MESH && frame.bounded_count == 1u {
@@ -151,19 +153,19 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             tally.flags |= select(0u, STATUS_STACK_FULL, has_inner && !has_space);
             group = vec2<u32>(node.children.y, meshes);
         }
-        // Read whether or not it is needed, as above.
+        // Back among the instances, and the group that was put aside last: read whether or not it is needed, as above.
         let top = stack[max(height, 1u) - 1u];
-        if group.y == 0u {
-            if height == 0u { break; }
-            if HAS_MESH && height == return_height {
-                return_height = NONE;
-                ray_origin = origin;
-                inverse = inverse_direction(direction);
-                octant = octant_bytes(direction);
-            }
-            height--;
-            group = top;
+        let is_done = group.y == 0u;
+        if is_done && height == 0u { break; }
+        if HAS_MESH {
+            let leaves = is_done && height == return_height;
+            return_height = select(return_height, NONE, leaves);
+            ray_origin = select(ray_origin, origin, leaves);
+            inverse = select(inverse, world_inverse, leaves);
+            octant = select(octant, world_octant, leaves);
         }
+        height -= select(0u, 1u, is_done);
+        group = select(group, top, is_done);
     }
     return hit;
 }
