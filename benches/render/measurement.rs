@@ -1,5 +1,6 @@
 //! One scene rendered once on one device, and the medians over several such runs.
 
+use crate::convergence::TimeToError;
 use crate::{Result, scene};
 use gpu_trace::device::{DeviceChoice, open_renderer};
 use gpu_trace::flatten::flatten;
@@ -41,6 +42,8 @@ pub struct Measurement {
     /// As if each instance were a copy.
     pub unrolled_triangles: u64,
     pub instances: u64,
+    /// For each error that was asked for.
+    pub times_to_rmse: Vec<TimeToError>,
 }
 
 impl Measurement {
@@ -128,6 +131,7 @@ pub fn measure(name: &str, device: &str, size: Option<[u32; 2]>, samples: Option
         triangles: buffers.triangles.len() as u64,
         unrolled_triangles: buffers.statistics.instanced_triangles,
         instances: buffers.instances.len() as u64,
+        times_to_rmse: Vec::new(),
     })
 }
 
@@ -143,7 +147,9 @@ pub fn in_own_process(name: &str, device: &str, size: Option<[u32; 2]>, samples:
     }
     let output = command.output()?;
     if !output.status.success() {
-        return Err(format!("{name} on {device}: {}", String::from_utf8_lossy(&output.stderr).trim()).into());
+        let text = String::from_utf8_lossy(&output.stderr);
+        let message = text.trim().trim_start_matches(crate::ERROR_PREFIX);
+        return Err(format!("{name} on {device}: {message}").into());
     }
     Ok(serde_json::from_slice(&output.stdout)?)
 }

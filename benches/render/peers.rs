@@ -25,6 +25,26 @@ fn twin(name: &str) -> Option<PathBuf> {
     path.exists().then_some(path)
 }
 
+/// Says before anything is measured what would keep POV-Ray from being compared.
+pub fn check(names: &[String], size: Option<[u32; 2]>, samples: Option<u32>) -> Result<()> {
+    if names.iter().all(|name| twin(name).is_none()) {
+        return Err(format!("--peers: no twin of {} in benches/peers", names.join(", ")).into());
+    }
+    if size.is_some_and(|size| size != [WIDTH, HEIGHT]) {
+        return Err(format!("--peers: the twins are rendered at {WIDTH}x{HEIGHT}").into());
+    }
+    if let Some(samples) = samples.filter(|samples| samples.isqrt().pow(2) != *samples) {
+        return Err(format!("--peers: POV-Ray takes a square number of samples, not {samples}").into());
+    }
+    let version = Command::new("povray").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
+    version.map_err(not_run)?;
+    Ok(())
+}
+
+fn not_run(error: std::io::Error) -> String {
+    format!("povray can't be run ({error}): install the package povray")
+}
+
 /// Renders with `edge`² camera samples a pixel on two threads, and returns the seconds that the process took.
 fn povray(scene: &Path, output: &Path, edge: u32) -> Result<f64> {
     let start = Instant::now();
@@ -36,7 +56,7 @@ fn povray(scene: &Path, output: &Path, edge: u32) -> Result<f64> {
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .status()
-        .map_err(|error| format!("povray can't be run ({error}): install the package povray"))?;
+        .map_err(not_run)?;
     if !status.success() {
         return Err(format!("povray failed on {}", scene.display()).into());
     }

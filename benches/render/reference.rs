@@ -1,4 +1,5 @@
-//! Pictures of 4096 samples, which take minutes and are kept under target/bench/references.
+//! Pictures of 4096 samples, which take minutes and are kept under target/bench/references. They are known by their
+//! scene: after a change to what the renderers make of a scene, delete the folder.
 
 use crate::Result;
 use crate::convergence::first;
