@@ -36,7 +36,8 @@ Examples:
   benches/run --scenes primitives --peers      POV-Ray on the same scene, in turn with ours
   benches/run --convergence                    how fast the error of soft shadows and depth of field falls
   benches/run --scenes glass --size 160x120 --rmse 0.02,0.01             time to a given error too
-  benches/run --triangles                      rays through meshes of ten thousand to ten million triangles";
+  benches/run --triangles                      rays through meshes of ten thousand to ten million triangles
+  benches/run --old-driver --scenes mesh       on the Mesa 22.3 that tests/run --old-driver has unpacked; stands first";
 
 /// Measure how fast gpu-trace renders the scenes of scenes/bench
 #[derive(Debug, Parser)]

@@ -38,6 +38,12 @@ pub fn print(measurements: &[Measurement]) {
         );
     }
     println!();
+    let mut drivers: Vec<_> = measurements.iter().map(|run| (&run.device, &run.driver)).collect();
+    drivers.sort();
+    drivers.dedup();
+    for (device, driver) in drivers {
+        println!("{device}: {driver}");
+    }
     for pair in measurements.windows(2).filter(|pair| pair[0].scene == pair[1].scene) {
         let ratio = pair[1].seconds / pair[0].seconds;
         println!("{}: {} is {ratio:.2} times as fast as {}", pair[0].scene, pair[0].device, pair[1].device);
