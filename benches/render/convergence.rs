@@ -142,7 +142,7 @@ fn print_ratio(peer: &PeerPoint, points: &[Point]) {
 }
 
 /// The first `samples` samples of a picture that has `of` of them.
-pub fn first(scene: &Scene, renderer: &mut dyn Renderer, samples: u32, of: u32, seed: u32) -> Result<(Film, f64)> {
+fn first(scene: &Scene, renderer: &mut dyn Renderer, samples: u32, of: u32, seed: u32) -> Result<(Film, f64)> {
     let mut scene = scene.clone();
     scene.sampling.camera = of;
     scene.sampling.seed = seed;

@@ -70,7 +70,7 @@ struct Arguments {
     convergence: bool,
 
     /// Errors whose times are told too, with commas between: RMSE of sRGB-encoded values in [0, 1] against a reference
-    /// of 4096 samples, which takes minutes and is kept in target/bench/references [default with --convergence:
+    /// of 4096 samples, which takes minutes, or an hour for large pictures, and is kept in target/bench/references [default with --convergence:
     /// 0.02,0.01,0.005]
     #[arg(long, value_name = "E", value_delimiter = ',', value_parser = parse_error)]
     rmse: Vec<f64>,

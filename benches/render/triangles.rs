@@ -71,7 +71,7 @@ fn print(medians: &[Measurement]) {
     }
 }
 
-/// Hills that fill the picture, in the light of scenes/bench/mesh.lua.
+/// Hills that all but fill the picture, in the light of scenes/bench/mesh.lua.
 pub fn scene(thousands: u32) -> Result<Scene> {
     let mut scene = scene::load("mesh", Some([320, 240]), Some(8))?;
     let mut graph = SceneGraph::default();
