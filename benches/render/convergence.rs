@@ -56,6 +56,8 @@ pub struct Curve {
     pub shadow: u32,
     pub sobol: Vec<Point>,
     pub independent: Vec<Point>,
+    /// POV-Ray on the scene's twin, where that was asked for.
+    pub povray: Vec<PeerPoint>,
     /// With Sobol's points.
     pub times_to_rmse: Vec<TimeToError>,
 }
@@ -74,7 +76,7 @@ pub fn report(request: &Request) -> Result<Vec<Curve>> {
         let reference = reference::film(name, &scene, first.as_mut())?;
         eprintln!("{name}: independent samples");
         let independent = independent(&scene, first.as_mut(), &reference)?;
-        let peer = if request.with_peers { peers::povray_convergence(name)? } else { None };
+        let peer = if request.with_peers { peers::convergence(name)? } else { Vec::new() };
         for (renderer, info) in &mut renderers {
             eprintln!("{name} on {}", info.name);
             let sobol = sobol(&scene, renderer.as_mut(), &reference, 0.0)?;
@@ -87,10 +89,11 @@ pub fn report(request: &Request) -> Result<Vec<Curve>> {
                 shadow: scene.sampling.shadow,
                 sobol,
                 independent: independent.clone(),
+                povray: peer.clone(),
                 times_to_rmse,
             };
             curve.print();
-            for point in peer.iter().flatten() {
+            for point in &peer {
                 print_ratio(point, &curve.sobol);
             }
             curves.push(curve);

@@ -31,13 +31,14 @@ const PLOT: &str = "target/bench/convergence.svg";
 
 const EXAMPLES: &str = "\
 Examples:
-  benches/run                                  all scenes on software Vulkan or the GPU, and on the CPU
+  benches/run                               all scenes on software Vulkan or the GPU, and on the CPU
   benches/run --scenes primitives,glass --runs 7 --json bench.json
-  benches/run --scenes primitives --peers      POV-Ray on the same scene, in turn with ours
-  benches/run --convergence                    how fast the error of soft shadows and depth of field falls
-  benches/run --scenes glass --size 160x120 --rmse 0.02,0.01             time to a given error too
-  benches/run --triangles                      rays through meshes of ten thousand to ten million triangles
-  benches/run --old-driver --scenes mesh       on the Mesa 22.3 that tests/run --old-driver has unpacked; stands first";
+  benches/run --size 160x90 --rmse 0.02     time to a given error too
+  benches/run --scenes primitives --peers   POV-Ray on the same scene, in turn with ours
+  benches/run --convergence                 how the error of soft shadows and lenses falls
+  benches/run --triangles                   what a ray costs among more and more triangles
+  benches/run --old-driver --scenes mesh    on the driver that tests/run --old-driver unpacks;
+                                            this option stands first";
 
 /// Measure how fast gpu-trace renders the scenes of scenes/bench
 #[derive(Debug, Parser)]
@@ -147,9 +148,7 @@ fn run(arguments: &Arguments) -> Result<()> {
     }
     let medians = measure(arguments, &names)?;
     table::print(&medians);
-    if arguments.peers {
-        peers::report(&names, &medians, arguments.runs)?;
-    }
+    peers::print(&medians);
     write_json(arguments, "medians", &medians)
 }
 
@@ -170,14 +169,20 @@ fn check(arguments: &Arguments, names: &[String]) -> Result<()> {
 
 /// Medians of every scene on every device, with the times to the errors that were asked for.
 fn measure(arguments: &Arguments, names: &[String]) -> Result<Vec<Measurement>> {
-    let Arguments { devices, runs, size, samples, rmse, .. } = arguments;
+    let Arguments { devices, runs, size, samples, rmse, peers, .. } = arguments;
     let mut measurements = Vec::new();
     for name in names {
         for run in 0..*runs {
+            let mut of_run = Vec::new();
             for device in devices {
                 eprintln!("{name} on {device}, run {} of {runs}", run + 1);
-                measurements.push(measurement::in_own_process(name, device, *size, *samples)?);
+                of_run.push(measurement::in_own_process(name, device, *size, *samples)?);
             }
+            if let (true, Some(ours)) = (*peers, of_run.first()) {
+                let seconds = peers::seconds(ours)?;
+                of_run.iter_mut().for_each(|measurement| measurement.povray_seconds = seconds);
+            }
+            measurements.append(&mut of_run);
         }
     }
     let mut medians = Measurement::medians(measurements);

@@ -44,6 +44,8 @@ pub struct Measurement {
     pub instances: u64,
     /// For each error that was asked for.
     pub times_to_rmse: Vec<TimeToError>,
+    /// What POV-Ray takes for the scene's twin, where that was measured.
+    pub povray_seconds: Option<f64>,
 }
 
 impl Measurement {
@@ -71,6 +73,7 @@ impl Measurement {
     }
 
     fn median(group: &[Measurement]) -> Measurement {
+        let povray = group.iter().filter_map(|run| run.povray_seconds).collect();
         let of = |figure: fn(&Measurement) -> f64| median(group.iter().map(figure).collect());
         Measurement {
             seconds: of(|run| run.seconds),
@@ -80,6 +83,7 @@ impl Measurement {
             first_dispatch_seconds: of(|run| run.first_dispatch_seconds),
             longest_submit_seconds: group.iter().map(|run| run.longest_submit_seconds).fold(0.0, f64::max),
             peak_memory: of(|run| run.peak_memory as f64) as u64,
+            povray_seconds: group.iter().any(|run| run.povray_seconds.is_some()).then(|| median(povray)),
             ..group[0].clone()
         }
     }
@@ -132,6 +136,7 @@ pub fn measure(name: &str, device: &str, size: Option<[u32; 2]>, samples: Option
         unrolled_triangles: buffers.statistics.instanced_triangles,
         instances: buffers.instances.len() as u64,
         times_to_rmse: Vec::new(),
+        povray_seconds: None,
     })
 }
 

@@ -1,7 +1,8 @@
 //! POV-Ray on the same scenes, where it is installed: benches/peers has the twins.
 
 use crate::Result;
-use crate::measurement::{Measurement, median};
+use crate::measurement::Measurement;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -13,6 +14,7 @@ const EDGES: [u32; 5] = [1, 2, 3, 4, 6];
 const REFERENCE_EDGE: u32 = 12;
 
 /// POV-Ray at one number of samples.
+#[derive(Clone, Serialize)]
 pub struct PeerPoint {
     /// Edge of the square of samples: +R.
     pub samples: u32,
@@ -63,34 +65,36 @@ fn povray(scene: &Path, output: &Path, edge: u32) -> Result<f64> {
     Ok(start.elapsed().as_secs_f64())
 }
 
-/// Renders the twins at the scenes' number of samples, and prints the ratios of time.
-pub fn report(names: &[String], ours: &[Measurement], runs: u32) -> Result<()> {
-    std::fs::create_dir_all("target/bench")?;
-    let output = Path::new("target/bench/povray.png");
-    for name in names {
-        let Some(scene) = twin(name) else { continue };
-        for run in ours.iter().filter(|run| run.scene == *name) {
-            if [run.width, run.height] != [WIDTH, HEIGHT] {
-                return Err(format!("{name}: the twin is rendered at {WIDTH}x{HEIGHT}").into());
-            }
-            let edge = run.samples.isqrt();
-            let seconds = (0..runs).map(|_| povray(&scene, output, edge)).collect::<Result<Vec<_>>>()?;
-            let seconds = median(seconds);
-            println!(
-                "{name}: POV-Ray +R{edge} {seconds:.2} s, {} {:.2} s: {:.2} times as fast at equal ray counts",
-                run.device,
-                run.seconds,
-                seconds / run.seconds
-            );
-        }
+/// Seconds that POV-Ray takes for the twin of a scene at the samples of our own run of it; `None` where it has no twin.
+pub fn seconds(ours: &Measurement) -> Result<Option<f64>> {
+    let Some(scene) = twin(&ours.scene) else { return Ok(None) };
+    if [ours.width, ours.height] != [WIDTH, HEIGHT] {
+        return Err(format!("{}: the twin is rendered at {WIDTH}x{HEIGHT}", ours.scene).into());
     }
-    Ok(())
+    std::fs::create_dir_all("target/bench")?;
+    eprintln!("{} by POV-Ray", ours.scene);
+    povray(&scene, Path::new("target/bench/povray.png"), ours.samples.isqrt()).map(Some)
+}
+
+/// Prints the ratios of time.
+pub fn print(medians: &[Measurement]) {
+    for run in medians {
+        let Some(seconds) = run.povray_seconds else { continue };
+        println!(
+            "{}: POV-Ray +R{} {seconds:.2} s, {} {:.2} s: {:.2} times as fast at equal ray counts",
+            run.scene,
+            run.samples.isqrt(),
+            run.device,
+            run.seconds,
+            seconds / run.seconds
+        );
+    }
 }
 
 /// POV-Ray's error against a converged picture of its own (12x12 samples, a light of 8x8), and its time, at each of
-/// [`EDGES`]; `None` where the scene has no twin.
-pub fn povray_convergence(name: &str) -> Result<Option<Vec<PeerPoint>>> {
-    let Some(scene) = twin(name) else { return Ok(None) };
+/// [`EDGES`]; nothing where the scene has no twin.
+pub fn convergence(name: &str) -> Result<Vec<PeerPoint>> {
+    let Some(scene) = twin(name) else { return Ok(Vec::new()) };
     std::fs::create_dir_all("target/bench")?;
     let converged = Path::new("target/bench/converged.pov");
     let text = std::fs::read_to_string(&scene)?;
@@ -112,5 +116,5 @@ pub fn povray_convergence(name: &str) -> Result<Option<Vec<PeerPoint>>> {
         let mean = differences.map(|difference| difference * difference).sum::<f64>() / picture.len() as f64;
         points.push(PeerPoint { samples: edge, seconds, rmse: mean.sqrt() });
     }
-    Ok(Some(points))
+    Ok(points)
 }
