@@ -2,12 +2,11 @@
 
 use serde::Serialize;
 use std::process::Command;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 #[derive(Debug, Serialize)]
 pub struct Circumstances {
-    /// Seconds since 1970.
-    pub unix_time: u64,
+    /// Coordinated universal time, as in 2026-11-25T09:00:00Z.
+    pub date: String,
     /// Abbreviated, with a `+` where files differ from it; empty outside a repository.
     pub commit: String,
     /// As Linux names it; empty on other systems.
@@ -28,7 +27,7 @@ impl Circumstances {
             line.split_once(':').map(|(_, name)| name.trim().to_owned())
         };
         Circumstances {
-            unix_time: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs()),
+            date: format!("{:.0}", jiff::Timestamp::now()),
             commit: if changed { commit + "+" } else { commit },
             processor: std::fs::read_to_string("/proc/cpuinfo").ok().and_then(model).unwrap_or_default(),
             cores: std::thread::available_parallelism().map_or(0, usize::from),

@@ -4,14 +4,14 @@
 //! reference of other random numbers. Independent samples are one-sample pictures of different seeds, averaged.
 
 use crate::peers::{self, PeerPoint};
-use crate::{Result, plot, reference, scene};
+use crate::{Result, reference, scene};
 use gpu_trace::device::{DeviceChoice, open_renderer};
 use gpu_trace::film::{Film, encode};
 use gpu_trace::flatten::flatten;
 use gpu_trace::render::{RenderOptions, Unattended, render};
 use gpu_trace::renderer::Renderer;
 use gpu_trace::scene::{Scene, Transfer};
-use std::path::PathBuf;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Camera samples, 2 to these powers.
@@ -27,27 +27,44 @@ pub struct Request {
     pub size: Option<[u32; 2]>,
     /// The errors whose times are asked for.
     pub errors: Vec<f64>,
-    /// Where the plot goes.
-    pub plot: PathBuf,
 }
 
 /// A picture's error and the seconds that it took, after a warm-up.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize)]
 pub struct Point {
     pub samples: u32,
     pub seconds: f64,
     pub rmse: f64,
 }
 
-/// The error over the number of samples, of Sobol's points and of independent ones.
-pub struct Curve {
-    pub name: String,
-    pub sobol: Vec<Point>,
-    pub independent: Vec<Point>,
+/// What an error takes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct TimeToError {
+    pub rmse: f64,
+    /// `None` where it is more than the samples measured.
+    pub seconds: Option<f64>,
 }
 
-pub fn report(request: &Request) -> Result<()> {
-    let mut curves: Vec<Curve> = Vec::new();
+/// The error of a scene over the number of samples, of Sobol's points and of independent ones.
+#[derive(Serialize)]
+pub struct Curve {
+    pub scene: String,
+    pub device: String,
+    pub driver: String,
+    pub size: [u32; 2],
+    /// Shadow rays a light at the first hit.
+    pub shadow: u32,
+    pub sobol: Vec<Point>,
+    pub independent: Vec<Point>,
+    /// POV-Ray on the scene's twin, where that was asked for.
+    pub povray: Vec<PeerPoint>,
+    /// With Sobol's points.
+    pub times_to_rmse: Vec<TimeToError>,
+}
+
+/// Prints the errors of every scene on every device, and returns them.
+pub fn report(request: &Request) -> Result<Vec<Curve>> {
+    let mut curves = Vec::new();
     for name in &request.scenes {
         let mut scene = scene::load(name, request.size, None)?;
         scene.sampling.shadow = request.shadow.unwrap_or(scene.sampling.shadow);
@@ -59,35 +76,59 @@ pub fn report(request: &Request) -> Result<()> {
         let reference = reference::film(name, &scene, first.as_mut())?;
         eprintln!("{name}: independent samples");
         let independent = independent(&scene, first.as_mut(), &reference)?;
-        let peer = if request.with_peers { peers::povray_convergence(name)? } else { None };
+        let peer = if request.with_peers { peers::convergence(name)? } else { Vec::new() };
         for (renderer, info) in &mut renderers {
             eprintln!("{name} on {}", info.name);
-            let points = sobol(&scene, renderer.as_mut(), &reference)?;
-            let [width, height] = scene.size;
-            let shadow = scene.sampling.shadow;
-            println!("\n{name} {width}x{height} on {}, {shadow} shadow rays a light at the first hit:\n", info.name);
-            println!("| samples | s | RMSE | RMSE of independent samples |\n|--:|--:|--:|--:|");
-            for (point, independent) in points.iter().zip(&independent) {
-                println!("| {} | {:.3} | {:.5} | {:.5} |", point.samples, point.seconds, point.rmse, independent.rmse);
+            let sobol = sobol(&scene, renderer.as_mut(), &reference, 0.0)?;
+            let times_to_rmse = times_to(&request.errors, &sobol);
+            let curve = Curve {
+                scene: name.clone(),
+                device: info.name.clone(),
+                driver: info.driver.clone(),
+                size: scene.size,
+                shadow: scene.sampling.shadow,
+                sobol,
+                independent: independent.clone(),
+                povray: peer.clone(),
+                times_to_rmse,
+            };
+            curve.print();
+            for point in &peer {
+                print_ratio(point, &curve.sobol);
             }
-            println!("\nRMSE falls as N^{:.2}, of independent samples as N^{:.2}", slope(&points), slope(&independent));
-            for &error in &request.errors {
-                match seconds_to(error, &points) {
-                    Some(seconds) => println!("RMSE {error}: {seconds:.3} s"),
-                    None => println!("RMSE {error}: not within {} samples", 1 << POWERS.end()),
-                }
-            }
-            for point in peer.iter().flatten() {
-                print_ratio(point, &points);
-            }
-            if curves.iter().all(|curve| curve.name != *name) {
-                curves.push(Curve { name: name.clone(), sobol: points, independent: independent.clone() });
+            curves.push(curve);
+        }
+    }
+    Ok(curves)
+}
+
+impl Curve {
+    fn print(&self) {
+        let Curve { scene, device, size: [width, height], shadow, sobol, independent, .. } = self;
+        println!("\n{scene} {width}x{height} on {device}, {shadow} shadow rays a light at the first hit:\n");
+        println!("| samples | s | RMSE | RMSE of independent samples |\n|--:|--:|--:|--:|");
+        for (point, independent) in sobol.iter().zip(independent) {
+            println!("| {} | {:.3} | {:.5} | {:.5} |", point.samples, point.seconds, point.rmse, independent.rmse);
+        }
+        println!("\nRMSE falls as N^{:.2}, of independent samples as N^{:.2}", slope(sobol), slope(independent));
+        for TimeToError { rmse, seconds } in &self.times_to_rmse {
+            match seconds {
+                Some(seconds) => println!("RMSE {rmse}: {seconds:.3} s"),
+                None => println!("RMSE {rmse}: not within {} samples", 1 << POWERS.end()),
             }
         }
     }
-    plot::write(&request.plot, &curves)?;
-    println!("\nplot: {}", request.plot.display());
-    Ok(())
+}
+
+/// What each of the errors takes on a device, in one run after a warm-up, and the device's name.
+pub fn times(name: &str, device: &str, size: Option<[u32; 2]>, errors: &[f64]) -> Result<(String, Vec<TimeToError>)> {
+    let scene = scene::load(name, size, None)?;
+    let (mut renderer, info) = open_renderer(&device.parse::<DeviceChoice>()?, false)?;
+    let reference = reference::film(name, &scene, renderer.as_mut())?;
+    eprintln!("{name} on {}: time to an error", info.name);
+    let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
+    let points = sobol(&scene, renderer.as_mut(), &reference, least)?;
+    Ok((info.name, times_to(errors, &points)))
 }
 
 fn print_ratio(peer: &PeerPoint, points: &[Point]) {
@@ -104,7 +145,7 @@ fn print_ratio(peer: &PeerPoint, points: &[Point]) {
 }
 
 /// The first `samples` samples of a picture that has `of` of them.
-pub fn first(scene: &Scene, renderer: &mut dyn Renderer, samples: u32, of: u32, seed: u32) -> Result<(Film, f64)> {
+fn first(scene: &Scene, renderer: &mut dyn Renderer, samples: u32, of: u32, seed: u32) -> Result<(Film, f64)> {
     let mut scene = scene.clone();
     scene.sampling.camera = of;
     scene.sampling.seed = seed;
@@ -114,14 +155,19 @@ pub fn first(scene: &Scene, renderer: &mut dyn Renderer, samples: u32, of: u32, 
     Ok((rendered.film, rendered.seconds))
 }
 
-fn sobol(scene: &Scene, renderer: &mut dyn Renderer, reference: &Film) -> Result<Vec<Point>> {
+/// The points up to the first whose error is at most `least`.
+fn sobol(scene: &Scene, renderer: &mut dyn Renderer, reference: &Film, least: f64) -> Result<Vec<Point>> {
     first(scene, renderer, 1, 1, scene.sampling.seed)?;
-    POWERS
-        .map(|power| {
-            let (film, seconds) = first(scene, renderer, 1 << power, 1 << power, scene.sampling.seed)?;
-            Ok(Point { samples: 1 << power, seconds, rmse: rmse(&film, reference) })
-        })
-        .collect()
+    let mut points = Vec::new();
+    for power in POWERS {
+        let (film, seconds) = first(scene, renderer, 1 << power, 1 << power, scene.sampling.seed)?;
+        let rmse = rmse(&film, reference);
+        points.push(Point { samples: 1 << power, seconds, rmse });
+        if rmse <= least {
+            break;
+        }
+    }
+    Ok(points)
 }
 
 fn independent(scene: &Scene, renderer: &mut dyn Renderer, reference: &Film) -> Result<Vec<Point>> {
@@ -162,6 +208,10 @@ pub fn slope(points: &[Point]) -> f64 {
         (logs.iter().map(|p| p.0).sum::<f64>() / count, logs.iter().map(|p| p.1).sum::<f64>() / count);
     let covariance: f64 = logs.iter().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
     covariance / logs.iter().map(|(x, _)| (x - mean_x).powi(2)).sum::<f64>()
+}
+
+fn times_to(errors: &[f64], points: &[Point]) -> Vec<TimeToError> {
+    errors.iter().map(|&rmse| TimeToError { rmse, seconds: seconds_to(rmse, points) }).collect()
 }
 
 /// Seconds in which the error is reached, between two measured points by their logarithms.

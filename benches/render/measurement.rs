@@ -1,5 +1,6 @@
 //! One scene rendered once on one device, and the medians over several such runs.
 
+use crate::convergence::TimeToError;
 use crate::{Result, scene};
 use gpu_trace::device::{DeviceChoice, open_renderer};
 use gpu_trace::flatten::flatten;
@@ -41,6 +42,10 @@ pub struct Measurement {
     /// As if each instance were a copy.
     pub unrolled_triangles: u64,
     pub instances: u64,
+    /// For each error that was asked for.
+    pub times_to_rmse: Vec<TimeToError>,
+    /// What POV-Ray takes for the scene's twin, where that was measured.
+    pub povray_seconds: Option<f64>,
 }
 
 impl Measurement {
@@ -68,6 +73,7 @@ impl Measurement {
     }
 
     fn median(group: &[Measurement]) -> Measurement {
+        let povray = group.iter().filter_map(|run| run.povray_seconds).collect();
         let of = |figure: fn(&Measurement) -> f64| median(group.iter().map(figure).collect());
         Measurement {
             seconds: of(|run| run.seconds),
@@ -77,6 +83,7 @@ impl Measurement {
             first_dispatch_seconds: of(|run| run.first_dispatch_seconds),
             longest_submit_seconds: group.iter().map(|run| run.longest_submit_seconds).fold(0.0, f64::max),
             peak_memory: of(|run| run.peak_memory as f64) as u64,
+            povray_seconds: group.iter().any(|run| run.povray_seconds.is_some()).then(|| median(povray)),
             ..group[0].clone()
         }
     }
@@ -128,6 +135,8 @@ pub fn measure(name: &str, device: &str, size: Option<[u32; 2]>, samples: Option
         triangles: buffers.triangles.len() as u64,
         unrolled_triangles: buffers.statistics.instanced_triangles,
         instances: buffers.instances.len() as u64,
+        times_to_rmse: Vec::new(),
+        povray_seconds: None,
     })
 }
 
@@ -143,7 +152,9 @@ pub fn in_own_process(name: &str, device: &str, size: Option<[u32; 2]>, samples:
     }
     let output = command.output()?;
     if !output.status.success() {
-        return Err(format!("{name} on {device}: {}", String::from_utf8_lossy(&output.stderr).trim()).into());
+        let text = String::from_utf8_lossy(&output.stderr);
+        let message = text.trim().trim_start_matches(crate::ERROR_PREFIX);
+        return Err(format!("{name} on {device}: {message}").into());
     }
     Ok(serde_json::from_slice(&output.stdout)?)
 }

@@ -1,7 +1,8 @@
 //! POV-Ray on the same scenes, where it is installed: benches/peers has the twins.
 
 use crate::Result;
-use crate::measurement::{Measurement, median};
+use crate::measurement::Measurement;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -13,6 +14,7 @@ const EDGES: [u32; 5] = [1, 2, 3, 4, 6];
 const REFERENCE_EDGE: u32 = 12;
 
 /// POV-Ray at one number of samples.
+#[derive(Clone, Serialize)]
 pub struct PeerPoint {
     /// Edge of the square of samples: +R.
     pub samples: u32,
@@ -23,6 +25,26 @@ pub struct PeerPoint {
 fn twin(name: &str) -> Option<PathBuf> {
     let path = Path::new("benches/peers").join(name).with_extension("pov");
     path.exists().then_some(path)
+}
+
+/// Says before anything is measured what would keep POV-Ray from being compared.
+pub fn check(names: &[String], size: Option<[u32; 2]>, samples: Option<u32>) -> Result<()> {
+    if names.iter().all(|name| twin(name).is_none()) {
+        return Err(format!("--peers: no twin of {} in benches/peers", names.join(", ")).into());
+    }
+    if size.is_some_and(|size| size != [WIDTH, HEIGHT]) {
+        return Err(format!("--peers: the twins are rendered at {WIDTH}x{HEIGHT}").into());
+    }
+    if let Some(samples) = samples.filter(|samples| samples.isqrt().pow(2) != *samples) {
+        return Err(format!("--peers: POV-Ray takes a square number of samples, not {samples}").into());
+    }
+    let version = Command::new("povray").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
+    version.map_err(not_run)?;
+    Ok(())
+}
+
+fn not_run(error: std::io::Error) -> String {
+    format!("povray can't be run ({error}): install the package povray")
 }
 
 /// Renders with `edge`² camera samples a pixel on two threads, and returns the seconds that the process took.
@@ -36,41 +58,43 @@ fn povray(scene: &Path, output: &Path, edge: u32) -> Result<f64> {
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .status()
-        .map_err(|error| format!("povray can't be run ({error}): install the package povray"))?;
+        .map_err(not_run)?;
     if !status.success() {
         return Err(format!("povray failed on {}", scene.display()).into());
     }
     Ok(start.elapsed().as_secs_f64())
 }
 
-/// Renders the twins at the scenes' number of samples, and prints the ratios of time.
-pub fn report(names: &[String], ours: &[Measurement], runs: u32) -> Result<()> {
-    std::fs::create_dir_all("target/bench")?;
-    let output = Path::new("target/bench/povray.png");
-    for name in names {
-        let Some(scene) = twin(name) else { continue };
-        for run in ours.iter().filter(|run| run.scene == *name) {
-            if [run.width, run.height] != [WIDTH, HEIGHT] {
-                return Err(format!("{name}: the twin is rendered at {WIDTH}x{HEIGHT}").into());
-            }
-            let edge = run.samples.isqrt();
-            let seconds = (0..runs).map(|_| povray(&scene, output, edge)).collect::<Result<Vec<_>>>()?;
-            let seconds = median(seconds);
-            println!(
-                "{name}: POV-Ray +R{edge} {seconds:.2} s, {} {:.2} s: {:.2} times as fast at equal ray counts",
-                run.device,
-                run.seconds,
-                seconds / run.seconds
-            );
-        }
+/// Seconds that POV-Ray takes for the twin of a scene at the samples of our own run of it; `None` where it has no twin.
+pub fn seconds(ours: &Measurement) -> Result<Option<f64>> {
+    let Some(scene) = twin(&ours.scene) else { return Ok(None) };
+    if [ours.width, ours.height] != [WIDTH, HEIGHT] {
+        return Err(format!("{}: the twin is rendered at {WIDTH}x{HEIGHT}", ours.scene).into());
     }
-    Ok(())
+    std::fs::create_dir_all("target/bench")?;
+    eprintln!("{} by POV-Ray", ours.scene);
+    povray(&scene, Path::new("target/bench/povray.png"), ours.samples.isqrt()).map(Some)
+}
+
+/// Prints the ratios of time.
+pub fn print(medians: &[Measurement]) {
+    for run in medians {
+        let Some(seconds) = run.povray_seconds else { continue };
+        println!(
+            "{}: POV-Ray +R{} {seconds:.2} s, {} {:.2} s: {:.2} times as fast at equal ray counts",
+            run.scene,
+            run.samples.isqrt(),
+            run.device,
+            run.seconds,
+            seconds / run.seconds
+        );
+    }
 }
 
 /// POV-Ray's error against a converged picture of its own (12x12 samples, a light of 8x8), and its time, at each of
-/// [`EDGES`]; `None` where the scene has no twin.
-pub fn povray_convergence(name: &str) -> Result<Option<Vec<PeerPoint>>> {
-    let Some(scene) = twin(name) else { return Ok(None) };
+/// [`EDGES`]; nothing where the scene has no twin.
+pub fn convergence(name: &str) -> Result<Vec<PeerPoint>> {
+    let Some(scene) = twin(name) else { return Ok(Vec::new()) };
     std::fs::create_dir_all("target/bench")?;
     let converged = Path::new("target/bench/converged.pov");
     let text = std::fs::read_to_string(&scene)?;
@@ -92,5 +116,5 @@ pub fn povray_convergence(name: &str) -> Result<Option<Vec<PeerPoint>>> {
         let mean = differences.map(|difference| difference * difference).sum::<f64>() / picture.len() as f64;
         points.push(PeerPoint { samples: edge, seconds, rmse: mean.sqrt() });
     }
-    Ok(Some(points))
+    Ok(points)
 }

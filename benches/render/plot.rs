@@ -5,8 +5,10 @@ use crate::convergence::{Curve, Point, slope};
 use plotters::prelude::*;
 use std::path::Path;
 
-/// Both axes logarithmic: thick with Sobol's points, thin with independent samples.
+/// Both axes logarithmic: thick with Sobol's points, thin with independent samples. Of several devices, which differ in
+/// time alone, the first is shown.
 pub fn write(path: &Path, curves: &[Curve]) -> Result<()> {
+    let curves: Vec<&Curve> = curves.iter().filter(|curve| curve.device == curves[0].device).collect();
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }
@@ -22,9 +24,9 @@ pub fn write(path: &Path, curves: &[Curve]) -> Result<()> {
         .y_label_area_size(64)
         .build_cartesian_2d((1f64..f64::from(most)).log_scale(), (lowest * 0.8..highest * 1.2).log_scale())?;
     chart.configure_mesh().x_desc("camera samples a pixel").y_desc("RMSE").draw()?;
-    for (number, Curve { name, sobol, independent }) in curves.iter().enumerate() {
+    for (number, Curve { scene, sobol, independent, .. }) in curves.iter().enumerate() {
         let colour = Palette99::pick(number).to_rgba();
-        let name = name.rsplit('/').next().unwrap_or(name);
+        let name = scene.rsplit('/').next().unwrap_or(scene);
         for (points, width, kind) in [(sobol, 3, "Owen-scrambled Sobol"), (independent, 1, "independent")] {
             let line: Vec<_> = points.iter().map(|Point { samples, rmse, .. }| (f64::from(*samples), *rmse)).collect();
             chart

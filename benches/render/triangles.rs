@@ -8,8 +8,6 @@ use std::sync::Arc;
 
 /// Thousands of triangles.
 const THOUSANDS: [u32; 5] = [10, 100, 1000, 2000, 10_000];
-/// Lavapipe binds 128 MiB a buffer.
-const MOST_ON_GPU: u32 = 2000;
 
 /// The name of the scene with that many thousands of triangles, as [`scene::load`] knows it.
 fn name(thousands: u32) -> String {
@@ -21,37 +19,59 @@ pub fn thousands(name: &str) -> Option<u32> {
     name.strip_prefix("hills-")?.strip_suffix('k')?.parse().ok().filter(|thousands| *thousands > 0)
 }
 
-pub fn report(devices: &[String], runs: u32) -> Result<()> {
-    println!(
-        "| device | triangles | BVH s | Mray/s | cost of a ray, times the first | logarithm of triangles, times the first \
-         | peak MiB |\n|---|--:|--:|--:|--:|--:|--:|"
-    );
-    for device in devices {
-        let mut first: Option<Measurement> = None;
+/// Measures each size on each device, in turn, prints a table, and returns the medians. What a device cannot hold is
+/// told and left out.
+pub fn report(devices: &[String], runs: u32, size: Option<[u32; 2]>, samples: Option<u32>) -> Result<Vec<Measurement>> {
+    let mut measurements = Vec::new();
+    let mut refused: Vec<(u32, &String)> = Vec::new();
+    for run in 0..runs {
         for thousands in THOUSANDS {
-            if device != "cpu" && thousands > MOST_ON_GPU {
-                continue;
+            for device in devices {
+                if refused.contains(&(thousands, device)) {
+                    continue;
+                }
+                eprintln!("{} on {device}, run {} of {runs}", name(thousands), run + 1);
+                match measurement::in_own_process(&name(thousands), device, size, samples) {
+                    Ok(measurement) => measurements.push(measurement),
+                    // The smallest fits every device: something else is wrong.
+                    Err(error) if thousands == THOUSANDS[0] => return Err(error),
+                    Err(error) => {
+                        eprintln!("left out: {error}");
+                        refused.push((thousands, device));
+                    }
+                }
             }
-            let once = || measurement::in_own_process(&name(thousands), device, None, None);
-            let medians = Measurement::medians((0..runs).map(|_| once()).collect::<Result<Vec<_>>>()?);
-            let Some(run) = medians.into_iter().next() else { continue };
-            let first = first.get_or_insert_with(|| run.clone());
+        }
+    }
+    let mut medians = Measurement::medians(measurements);
+    medians.sort_by(|a, b| (&a.device, a.triangles).cmp(&(&b.device, b.triangles)));
+    print(&medians);
+    Ok(medians)
+}
+
+/// By device, the fewest triangles first.
+fn print(medians: &[Measurement]) {
+    println!(
+        "| device | triangles | packing and BVH s | Mray/s | cost of a ray, times the first | logarithm of triangles, \
+         times the first | peak MiB |\n|---|--:|--:|--:|--:|--:|--:|"
+    );
+    for rows in medians.chunk_by(|a, b| a.device == b.device) {
+        for run in rows {
             println!(
                 "| {} | {} | {:.3} | {:.2} | {:.2} | {:.2} | {} |",
                 run.device,
                 run.triangles,
                 run.mesh_seconds,
                 run.mrays_per_second(),
-                first.mrays_per_second() / run.mrays_per_second(),
-                (run.triangles as f64).ln() / (first.triangles as f64).ln(),
+                rows[0].mrays_per_second() / run.mrays_per_second(),
+                (run.triangles as f64).ln() / (rows[0].triangles as f64).ln(),
                 run.peak_memory >> 20,
             );
         }
     }
-    Ok(())
 }
 
-/// Hills that fill the picture, in the light of scenes/bench/mesh.lua.
+/// Hills that all but fill the picture, in the light of scenes/bench/mesh.lua.
 pub fn scene(thousands: u32) -> Result<Scene> {
     let mut scene = scene::load("mesh", Some([320, 240]), Some(8))?;
     let mut graph = SceneGraph::default();
