@@ -13,13 +13,14 @@ const WIDTH: u32 = 200;
 const CAMERA_SAMPLES: u32 = 4;
 
 fn scene_files() -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = std::fs::read_dir("scenes")
-        .expect("the tests run in the project's folder")
+    let mut files: Vec<PathBuf> = ["scenes", "scenes/bench", "scenes/bench/convergence"]
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(folder).expect("the tests run in the project's folder"))
         .map(|entry| entry.expect("a readable folder").path())
         .filter(|path| path.extension().is_some_and(|extension| extension == "lua"))
         .collect();
     files.sort();
-    assert!(files.len() >= 7, "only {} scenes found", files.len());
+    assert!(files.len() >= 14, "only {} scenes found", files.len());
     files
 }
 
