@@ -1,6 +1,7 @@
 -- Convergence of soft shadows alone: a floor that fills the picture, wholly within the penumbra of bars that are out of
 -- sight, under a square light. No edge is seen, so that the error is that of the integral over the light.
--- 160x120, one shadow ray a camera sample.
+-- Nothing is near black, where the sRGB curve bends so much that even independent samples would fall faster than N^-0.5.
+-- 320x240, one shadow ray a camera sample.
 
 local scene = gr.node('scene')
 local floor = gr.plane('floor')
@@ -17,9 +18,9 @@ for i = -2, 2 do
 end
 
 gr.render {
-  scene = scene, output = 'soft-shadow.png', size = { 160, 120 },
+  scene = scene, output = 'soft-shadow.png', size = { 320, 240 },
   camera = { eye = { 0, 4, 5 }, look_at = { 0, 0, 0 }, fov = 45 },
-  ambient = { 0.05, 0.05, 0.05 },
-  lights = { gr.area_light { position = { 1, 12, 1 }, colour = { 0.9, 0.9, 0.9 }, u = { 5, 0, 0 }, v = { 0, 0, 5 } } },
+  ambient = { 0.3, 0.3, 0.3 },
+  lights = { gr.area_light { position = { 1, 12, 1 }, colour = { 0.6, 0.6, 0.6 }, u = { 5, 0, 0 }, v = { 0, 0, 5 } } },
   samples = 16, shadow = 1, max_depth = 0,
 }
