@@ -31,7 +31,7 @@ struct Frame {
     image_size: vec2<u32>,
     // The first `plane_count` instances are infinite planes, outside the hierarchy.
     plane_count: u32,
-    // The instances after them; nodes[0] is the root of the hierarchy over these, if there are any.
+    // The surfaces after them; nodes[0] is the root of the hierarchy over these, if there are any.
     bounded_count: u32,
     light_count: u32,
     // Camera samples share this number of passes; each pass takes a slice of the splits at depth 0.
@@ -50,6 +50,11 @@ struct Frame {
     background_image: u32,
     // Angle between neighbouring camera samples in the middle of the picture, radians.
     pixel_spread: f32,
+    // The mists after the surfaces, and the root of the hierarchy over them.
+    mist_count: u32,
+    mist_root: u32,
+    pad0: u32,
+    pad1: u32,
 };
 
 // What one dispatch renders: one pass of one camera sample over some 8 x 8 pixel blocks of one band.

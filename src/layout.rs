@@ -37,6 +37,10 @@ pub struct Frame {
     pub mist: UVec2,
     pub background_image: u32,
     pub pixel_spread: f32,
+    pub mist_count: u32,
+    pub mist_root: u32,
+    pub pad0: u32,
+    pub pad1: u32,
 }
 
 /// Constants of one dispatch; twin of `Dispatch`.

@@ -80,6 +80,10 @@ fn rust_structs() -> Vec<Struct> {
             mist,
             background_image,
             pixel_spread,
+            mist_count,
+            mist_root,
+            pad0,
+            pad1,
         }),
         rust_struct!(Dispatch {
             sample_index,

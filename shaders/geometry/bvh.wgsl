@@ -51,7 +51,10 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             }
         }
     }
-    if frame.bounded_count == 0u { return hit; }
+    // Mists have a hierarchy of their own.
+    let in_mist = HAS_MIST && mask == INSTANCE_MIST;
+    let count = select(frame.bounded_count, frame.mist_count, in_mist);
+    if count == 0u { return hit; }
 
     var stack: array<vec2<u32>, TRAVERSAL_STACK>;
     var height = 0u;
@@ -65,15 +68,15 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     var inverse = world_inverse;
     var octant = world_octant;
     // The group in hand: nodes, or instances of meshes. The root, to begin with.
-    var group = vec2<u32>(0u, 0x80000000u);
-    if HAS_MESH && frame.bounded_count == 1u {
-        let only = frame.plane_count;
+    var group = vec2<u32>(select(0u, frame.mist_root, in_mist), 0x80000000u);
+    if HAS_MESH && count == 1u {
+        let only = frame.plane_count + select(0u, frame.bounded_count, in_mist);
         if instances[only].shape == SHAPE_MESH && (instances[only].flags & mask) != 0u {
             group = vec2<u32>(only, 1u);
         }
     }
 
-    let only_meshes = HAS_MESH && !(HAS_ANALYTIC || HAS_MIST || HAS_SHADOWLESS);
+    let only_meshes = HAS_MESH && !(HAS_ANALYTIC || HAS_SHADOWLESS);
     for (var turn = 0u; ; turn++) {
         if turn == TRAVERSAL_TURNS {
             tally.flags |= STATUS_LOOP_BOUND;
@@ -126,7 +129,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
                 }
                 continue;
             }
-            if (HAS_MIST || HAS_SHADOWLESS) && (instances[index].flags & mask) == 0u {
+            if HAS_SHADOWLESS && (instances[index].flags & mask) == 0u {
                 continue;
             }
             if HAS_MESH && instances[index].shape == SHAPE_MESH {

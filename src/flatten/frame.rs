@@ -1,5 +1,6 @@
 //! The constants of one picture: camera, light counts, flags, and the plan of its work.
 
+use super::instances::BuiltInstances;
 use super::work::plan_work;
 use crate::layout::{FRAME_BLINN, FRAME_SAMPLE_CENTRE, FRAME_SAMPLE_CORNER, FRAME_TRANSPARENT, Frame, NONE};
 use crate::scene::{PixelOrigin, Scene, Specular};
@@ -20,7 +21,7 @@ fn sample_spread(scene: &Scene) -> f32 {
     (pixel * share) as f32
 }
 
-pub fn frame(scene: &Scene, plane_count: u32, bounded_count: u32) -> Result<Frame> {
+pub fn frame(scene: &Scene, built: &BuiltInstances) -> Result<Frame> {
     let camera = &scene.camera;
     let sampling = &scene.sampling;
     let right = camera.forward.cross(camera.up);
@@ -79,8 +80,10 @@ pub fn frame(scene: &Scene, plane_count: u32, bounded_count: u32) -> Result<Fram
         max_depth: sampling.max_depth,
         medium: UVec2::ZERO,
         image_size: UVec2::new(width, height),
-        plane_count,
-        bounded_count,
+        plane_count: built.plane_count,
+        bounded_count: built.surface_count,
+        mist_count: built.instances.len() as u32 - built.plane_count - built.surface_count,
+        mist_root: built.mist_root,
         light_count: scene.lights.len() as u32,
         background_image: NONE,
         pixel_spread: sample_spread(scene),

@@ -6,8 +6,8 @@ use super::mesh::Meshes;
 use super::mist::Mists;
 use super::walk::Placement;
 use crate::layout::{
-    AffineRows, INSTANCE_SEEN, INSTANCE_SHADES, Instance, NONE, Node, SHAPE_CONE, SHAPE_CUBE, SHAPE_CYLINDER,
-    SHAPE_MESH, SHAPE_PLANE, SHAPE_SPHERE, SHAPE_TORUS,
+    AffineRows, INSTANCE_MIST, INSTANCE_SEEN, INSTANCE_SHADES, Instance, NONE, Node, SHAPE_CONE, SHAPE_CUBE,
+    SHAPE_CYLINDER, SHAPE_MESH, SHAPE_PLANE, SHAPE_SPHERE, SHAPE_TORUS,
 };
 use crate::scene::{SceneGraph, Shape};
 use crate::{Error, Result};
@@ -21,8 +21,12 @@ const MAX_COORDINATE: f64 = 1e12;
 pub struct BuiltInstances {
     pub instances: Vec<Instance>,
     pub plane_count: u32,
-    /// Root first; empty where there are only planes.
+    /// After the planes; the others after them are mists.
+    pub surface_count: u32,
+    /// The hierarchy over the surfaces, root first, then that over the mists; each empty where there are none.
     pub nodes: Vec<Node>,
+    /// Root of the hierarchy over the mists, if there are any.
+    pub mist_root: u32,
     /// Triangles over all instances.
     pub instanced_triangles: u64,
     /// Levels of nodes, those of the deepest mesh included.
@@ -102,7 +106,7 @@ fn casts_shadow(graph: &SceneGraph, placement: &Placement) -> bool {
     placement.material.is_none_or(|id| graph.materials[id.0 as usize].casts_shadow)
 }
 
-/// Planes first, then the others in the order of the leaves; the roots of meshes where `flatten` will put them.
+/// Planes first, then surfaces and then mists, each in the order of their leaves; the roots of meshes where `flatten` will put them.
 fn ordered(
     planes: Vec<Instance>,
     bounded: Vec<Instance>,
@@ -111,9 +115,15 @@ fn ordered(
     instanced_triangles: u64,
 ) -> BuiltInstances {
     let plane_count = planes.len() as u32;
-    let hierarchy = bvh::build(boxes);
+    let (mists, surfaces): (Vec<u32>, Vec<u32>) =
+        (0..bounded.len() as u32).partition(|&i| bounded[i as usize].flags & INSTANCE_MIST != 0);
+    let build = |members: &[u32]| bvh::build(&members.iter().map(|&i| boxes[i as usize]).collect::<Vec<_>>());
+    let (over_surfaces, over_mists) = (build(&surfaces), build(&mists));
+    let surface_count = surfaces.len() as u32;
     let mut nodes = Vec::new();
-    bvh::append(&mut nodes, &hierarchy.nodes, plane_count);
+    bvh::append(&mut nodes, &over_surfaces.nodes, plane_count);
+    let mist_root = nodes.len() as u32;
+    bvh::append(&mut nodes, &over_mists.nodes, plane_count + surface_count);
     let mut end = nodes.len() as u32;
     let mut roots = Vec::with_capacity(meshes.built.len());
     for mesh in &meshes.built {
@@ -121,7 +131,9 @@ fn ordered(
         end += mesh.hierarchy.nodes.len() as u32;
     }
     let mut instances = planes;
-    instances.extend(hierarchy.order.iter().map(|&i| {
+    let in_order = over_surfaces.order.iter().map(|&i| surfaces[i as usize]);
+    let in_order = in_order.chain(over_mists.order.iter().map(|&i| mists[i as usize]));
+    instances.extend(in_order.map(|i| {
         let mut instance = bounded[i as usize];
         if instance.shape == SHAPE_MESH {
             instance.root = roots[instance.root as usize];
@@ -129,7 +141,8 @@ fn ordered(
         instance
     }));
     let mesh_depth = meshes.built.iter().map(|mesh| mesh.hierarchy.depth).max().unwrap_or(0);
-    BuiltInstances { instances, plane_count, nodes, instanced_triangles, depth: hierarchy.depth + mesh_depth }
+    let depth = over_surfaces.depth.max(over_mists.depth) + mesh_depth;
+    BuiltInstances { instances, plane_count, surface_count, nodes, mist_root, instanced_triangles, depth }
 }
 
 /// The box around a shape in its own space; `None` for a plane.

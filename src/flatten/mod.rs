@@ -30,9 +30,9 @@ use std::time::Instant;
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuffers {
     pub frame: Frame,
-    /// The hierarchy over the instances, root first, then one for each mesh.
+    /// The hierarchy over the surfaces, root first, that over the mists, and then one for each mesh.
     pub nodes: Vec<Node>,
-    /// Infinite planes first (`frame.plane_count`), then the leaves of the hierarchy in its order.
+    /// Infinite planes first (`frame.plane_count`), then the leaves of the hierarchies in their order.
     pub instances: Vec<Instance>,
     /// Mesh after mesh, each in the order of its hierarchy's leaves.
     pub triangles: Vec<Triangle>,
@@ -114,7 +114,7 @@ pub fn flatten_with(scene: &Scene, cache: &FlattenCache) -> Result<SceneBuffers>
     let mists = mist::Mists::new(&mut materials, scene.camera.eye);
     let built = instances::build(&scene.graph, &placements, &meshes, &of_placement, mists)?;
     let lights = lights::lights(scene)?;
-    let mut frame = frame::frame(scene, built.plane_count, built.instances.len() as u32 - built.plane_count)?;
+    let mut frame = frame::frame(scene, &built)?;
     if let Some(image) = &scene.background.image {
         frame.background_image = atlas.add(image)?;
     }

@@ -142,13 +142,16 @@ impl Session {
         if frame.image_size != image_size {
             return Err(format!("the picture was {image_size} and became {}", frame.image_size));
         }
-        let planes_and_bounded = u64::from(frame.plane_count) + u64::from(frame.bounded_count);
-        if planes_and_bounded > instances as u64 || frame.light_count as usize > lights {
-            return Err(format!("{planes_and_bounded} instances, {} lights", frame.light_count));
+        let counts = [frame.plane_count, frame.bounded_count, frame.mist_count];
+        let counted: u64 = counts.into_iter().map(u64::from).sum();
+        if counted > instances as u64 || frame.light_count as usize > lights {
+            return Err(format!("{counted} instances, {} lights", frame.light_count));
         }
-        if (frame.bounded_count != 0 && nodes == 0) || frame.pass_count == 0 {
-            let Frame { bounded_count, pass_count, .. } = frame;
-            return Err(format!("{bounded_count} bounded instances with {nodes} nodes, {pass_count} passes"));
+        let has_roots =
+            (frame.bounded_count == 0 || nodes > 0) && (frame.mist_count == 0 || nodes > frame.mist_root as usize);
+        if !has_roots || frame.pass_count == 0 {
+            let Frame { pass_count, mist_root, .. } = frame;
+            return Err(format!("{counted} instances, {nodes} nodes, mist from {mist_root}, {pass_count} passes"));
         }
         let rows = self.band.end - self.band.start;
         let order = BlockOrder::new(image_size.x, rows);

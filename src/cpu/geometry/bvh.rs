@@ -86,7 +86,14 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             }
         }
     }
-    if scene.frame.bounded_count == 0 {
+    // Mists have a hierarchy of their own.
+    let (first, count, root) = match MASK {
+        INSTANCE_MIST => {
+            (scene.frame.plane_count + scene.frame.bounded_count, scene.frame.mist_count, scene.frame.mist_root)
+        }
+        _ => (scene.frame.plane_count, scene.frame.bounded_count, 0),
+    };
+    if count == 0 {
         return hit;
     }
 
@@ -97,12 +104,11 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
     let mut inverse = inverse_direction(direction);
     let mut octant = octant_bytes(direction);
     // The group in hand: nodes, or instances of meshes. The root, to begin with.
-    let mut group = UVec2::new(0, 0x8000_0000);
-    if scene.frame.bounded_count == 1 {
-        let only = scene.frame.plane_count;
-        let instance = &scene.instances[only as usize];
+    let mut group = UVec2::new(root, 0x8000_0000);
+    if count == 1 {
+        let instance = &scene.instances[first as usize];
         if instance.shape == SHAPE_MESH && instance.flags & MASK != 0 {
-            group = UVec2::new(only, 1);
+            group = UVec2::new(first, 1);
         }
     }
 
