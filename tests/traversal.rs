@@ -65,7 +65,7 @@ fn brute_force(scene: &Bindings, ranges: &BTreeMap<u32, Range<u32>>, ray: Ray) -
                 }
             }
             _ => {
-                let hit = instance_intersect(scene, index, origin, direction, ray.t_max);
+                let hit = instance_intersect(scene, index, instance.shape, origin, direction, ray.t_max);
                 add(hit.t, index, hit.face);
             }
         }

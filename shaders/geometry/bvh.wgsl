@@ -132,14 +132,15 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             if HAS_SHADOWLESS && (instances[index].flags & mask) == 0u {
                 continue;
             }
-            if HAS_MESH && instances[index].shape == SHAPE_MESH {
+            let shape = instances[index].shape;
+            if HAS_MESH && shape == SHAPE_MESH {
                 meshes |= 1u << place;
                 continue;
             }
             let object_from_world = instances[index].object_from_world;
             let object_origin = transform_point(object_from_world, origin);
             let object_direction = transform_vector(object_from_world, direction);
-            let met = instance_intersect(index, object_origin, object_direction, nearest);
+            let met = instance_intersect(index, shape, object_origin, object_direction, nearest);
             if met.t > 0.0 {
                 hit = Hit(met.t, index, met.face, 0.0, 0.0);
                 nearest = met.t;

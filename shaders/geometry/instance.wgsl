@@ -31,11 +31,11 @@ fn unit_vector_of_any_size(v: vec3<f32>) -> vec3<f32> {
     return scaled / sqrt(scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z);
 }
 
-// Nearest hit of an instance that is neither plane nor mesh, by a ray in the instance's object space. The direction
-// is not normalised there, so that t is the same in the world.
-fn instance_intersect(index: u32, origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> ShapeHit {
+// Nearest hit of an instance of this shape, neither plane nor mesh, by a ray in the instance's object space. The
+// direction is not normalised there, so that t is the same in the world.
+fn instance_intersect(index: u32, shape: u32, origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> ShapeHit {
     var hit = ShapeHit(MISS, 0u);
-    switch instances[index].shape {
+    switch shape {
         case SHAPE_SPHERE: {
             if HAS_SPHERE { hit = sphere_intersect(origin, direction, t_max); }
         }

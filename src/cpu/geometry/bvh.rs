@@ -168,7 +168,7 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             }
             let object_origin = transform_point(&instance.object_from_world, origin);
             let object_direction = transform_vector(&instance.object_from_world, direction);
-            let met = instance_intersect(scene, index, object_origin, object_direction, nearest);
+            let met = instance_intersect(scene, index, instance.shape, object_origin, object_direction, nearest);
             if met.t > 0.0 {
                 hit = Hit { t: met.t, instance: index, primitive: met.face, b1: 0.0, b2: 0.0 };
                 nearest = met.t;

@@ -50,16 +50,22 @@ pub fn unit_vector_of_any_size(v: Vec3) -> Vec3 {
     scaled / (scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z).sqrt()
 }
 
-/// Nearest hit of an instance that is neither plane nor mesh, by a ray in the instance's object space. The direction
-/// is not normalised there, so that t is the same in the world.
-pub fn instance_intersect(scene: &Bindings, index: u32, origin: Vec3, direction: Vec3, t_max: f32) -> ShapeHit {
-    let instance = &scene.instances[index as usize];
-    match instance.shape {
+/// Nearest hit of an instance of this shape, neither plane nor mesh, by a ray in the instance's object space. The
+/// direction is not normalised there, so that t is the same in the world.
+pub fn instance_intersect(
+    scene: &Bindings,
+    index: u32,
+    shape: u32,
+    origin: Vec3,
+    direction: Vec3,
+    t_max: f32,
+) -> ShapeHit {
+    match shape {
         SHAPE_SPHERE => sphere_intersect(origin, direction, t_max),
         SHAPE_CUBE => cube_intersect(origin, direction, t_max),
         SHAPE_CYLINDER => cylinder_intersect(origin, direction, t_max),
         SHAPE_CONE => cone_intersect(origin, direction, t_max),
-        SHAPE_TORUS => torus_intersect(origin, direction, t_max, instance.parameters.xy()),
+        SHAPE_TORUS => torus_intersect(origin, direction, t_max, scene.instances[index as usize].parameters.xy()),
         _ => ShapeHit { t: MISS, face: 0 },
     }
 }
