@@ -74,23 +74,6 @@ fn run(arguments: &Arguments) -> Result<()> {
         buffers.statistics.buffer_bytes as f64 / 1048576.0
     );
     let mut gpu = Gpu::new(buffers.clone())?;
-    if std::env::var("GT_SHADERS").is_ok() {
-        let cpu = || -> f64 {
-            let t = std::fs::read_to_string("/proc/self/stat").unwrap();
-            let f: Vec<&str> = t.rsplit(')').next().unwrap().split_whitespace().collect();
-            (f[11].parse::<f64>().unwrap() + f[12].parse::<f64>().unwrap()) / 100.0
-        };
-        let mut all = Vec::new();
-        gpu.trace()?;
-        for _ in 0..arguments.rounds {
-            let c = cpu();
-            let t = gpu.trace()?;
-            all.push(t.rays as f64 / (cpu() - c) * 2.0 / 1e6);
-        }
-        all.sort_by(f64::total_cmp);
-        println!("{:.3} (best {:.3})", all[all.len() / 2], all[all.len() - 1]);
-        return Ok(());
-    }
     let mut rows: Vec<(String, Vec<Traced>)> =
         vec![(gpu.name.clone(), Vec::new()), ("CPU renderer".into(), Vec::new())];
     if embree.is_some() {
