@@ -5,9 +5,9 @@ const BLOCK_EDGE: u32 = 8u;
 const TILE_EDGE: u32 = 4u;
 const TILE_BLOCKS: u32 = TILE_EDGE * TILE_EDGE;
 
-// The place that a workgroup takes; there are no more than block_count, and it may lie beyond them. Lavapipe's threads
-// take contiguous portions of the workgroups: each gets its share of every few neighbouring blocks, so that all have the
-// same to do.
+// The place that a workgroup takes. The last ones of a portion may lie beyond the dispatch's blocks, and have nothing to
+// do. Lavapipe's threads take contiguous portions of the workgroups: each gets its share of every few neighbouring
+// blocks, so that all have the same to do.
 fn place_of(group: u32) -> u32 {
     let portion = (dispatch.block_count + dispatch.portions - 1u) / dispatch.portions;
     return dispatch.first_block + (group % portion) * dispatch.portions + group / portion;

@@ -310,6 +310,7 @@ fn dispatches_that_do_not_fit_the_band_are_refused() {
         Frame { plane_count: 1, ..frame },
         Frame { light_count: 1, ..frame },
         Frame { bounded_count: 1, ..frame },
+        Frame { mist_count: 1, ..frame },
     ];
     for frame in wrong {
         let result = renderer.submit(&frame, &[right]);

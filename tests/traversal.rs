@@ -11,7 +11,7 @@ use gpu_trace::cpu::geometry::triangle::{triangle_intersect, triangle_ray};
 use gpu_trace::flatten::SceneBuffers;
 use gpu_trace::layout::{Instance, Node, SHAPE_MESH, SHAPE_PLANE, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
 use gpu_trace::renderer::Tally;
-use gpu_trace::scene::{Node as SceneNode, Shape};
+use gpu_trace::scene::{Mesh, Node as SceneNode, Shape};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
@@ -307,4 +307,30 @@ fn loop_and_stack_bounds_are_reported() {
     let mut tally = Tally::default();
     let hit = scene_intersect(&bindings(&buffers), ray.origin, ray.direction, ray.t_max, &mut tally);
     assert_eq!((hit.t, tally.flags), (MISS, STATUS_LOOP_BOUND | STATUS_STACK_FULL));
+}
+
+/// An instance's box is put together of many; each end of a turned row of triangles has to be in it.
+#[test]
+fn turned_meshes_are_met_at_every_triangle() {
+    let count = 150;
+    let corner = |i: u32| 2.0 * i as f32;
+    let mesh = Arc::new(Mesh {
+        positions: (0..count)
+            .flat_map(|i| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, z)| Vec3::new(corner(i) + x, 0.0, z)))
+            .collect(),
+        triangles: (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+        ..Mesh::default()
+    });
+    // Two instances, since one alone is entered without its box.
+    let turned = DAffine3::from_rotation_y(0.7);
+    let lifted = DAffine3::from_translation(DVec3::new(0.0, -50.0, 0.0)) * turned;
+    let buffers = flattened(&scene_of([turned, lifted].map(|map| (Shape::Mesh(mesh.clone()), map))));
+    for map in [turned, lifted] {
+        for i in 0..count {
+            let target = map.transform_point3(DVec3::new(f64::from(corner(i)) + 0.25, 0.0, 0.25)).as_vec3();
+            let (origin, mut tally) = (target + Vec3::Y, Tally::default());
+            let hit = scene_intersect(&bindings(&buffers), origin, Vec3::NEG_Y, 10.0, &mut tally);
+            assert!((hit.t - 1.0).abs() < 1e-4, "triangle {i}: {hit:?}");
+        }
+    }
 }
