@@ -76,14 +76,14 @@ struct Dispatch {
     canary_turns: u32,
 };
 
-// One node of the compressed wide hierarchy, eight children in 80 bytes (Ylitie, Karras, Laine 2017, section 3);
-// the byte order is obvhs's. Five loads of 16 bytes: lavapipe's take about the same time whatever their width.
+// One node of the compressed wide hierarchy, eight children in 80 bytes (Ylitie, Karras, Laine 2017, section 3). Inner
+// children come first, then instances of meshes, then all other leaves: src/flatten/bvh.rs puts them so.
 struct Node {
-    // Minimum corner of the quantisation grid (bits of f32); three exponent bytes (x lowest), then the mask of the
-    // children that are inner nodes.
+    // Minimum corner of the quantisation grid (bits of f32); three exponent bytes (x lowest), then the number
+    // of inner children in the low half of a byte and that of children that are instances of meshes in the high half.
     grid: vec4<u32>,
-    // First inner child, first primitive; then a byte a child: 001 and 24 + slot for an inner child; unary primitive
-    // count and offset for a leaf; 0 for none.
+    // First inner child, first primitive; then a byte a child: number of primitives in unary (three bits) and the
+    // place of the first among the node's (five bits) for a leaf; 0 for an inner child and for none.
     children: vec4<u32>,
     // Bounds of the children along an axis, a byte each in units of the grid: minima of 0 to 3, minima of 4 to 7, maxima
     // of 0 to 3, maxima of 4 to 7.

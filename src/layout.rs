@@ -58,7 +58,7 @@ pub struct Dispatch {
     pub canary_turns: u32,
 }
 
-/// A node of the compressed wide hierarchy; twin of `Node` and of `obvhs::cwbvh::node::CwBvhNode`.
+/// A node of the compressed wide hierarchy; twin of `Node`. `flatten::bvh` makes it of obvhs's, whose bounds it has.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Node {

@@ -26,8 +26,7 @@ fn triangle_ranges(buffers: &SceneBuffers) -> BTreeMap<u32, Range<u32>> {
     for (root, end) in roots.iter().copied().zip(ends) {
         let nodes = &buffers.nodes[root as usize..end as usize];
         let metas = nodes.iter().flat_map(|node| [node.children.z, node.children.w]).flat_map(u32::to_le_bytes);
-        let leaves = metas.filter(|meta| meta & 0x18 != 0x18);
-        let count: u32 = leaves.map(|meta| (meta >> 5).count_ones()).sum();
+        let count: u32 = metas.map(|meta| (meta >> 5).count_ones()).sum();
         ranges.insert(root, start..start + count);
         start += count;
     }
@@ -263,7 +262,10 @@ fn the_comparison_notices_a_broken_hierarchy() {
             let shorten = |bytes: u32| u32::from_le_bytes(bytes.to_le_bytes().map(|byte| byte - byte / 4));
             node.x = UVec4::new(node.x.x, node.x.y, shorten(node.x.z), shorten(node.x.w));
         }),
-        ("empty children", |node| node.children.z = 0),
+        ("no inner children, and empty leaves", |node| {
+            node.grid.w &= 0x00ff_ffff;
+            node.children.z = 0;
+        }),
         ("a misplaced grid", |node| node.grid.y = (f32::from_bits(node.grid.y) + 3.0).to_bits()),
     ];
     for (name, breakage) in breakages {
@@ -298,9 +300,9 @@ fn loop_and_stack_bounds_are_reported() {
     let ray = Ray { origin: Vec3::new(-9.0, -9.0, 0.0), direction: Vec3::new(3.0, 2.9, 0.0), t_max: 1e30 };
     assert_same("sound", &buffers, &[ray]);
     for node in &mut buffers.nodes {
-        // Every child is an inner node, and fills the box; there is no way out.
-        node.grid.w |= 0x0700_0000;
-        node.children = UVec4::new(0, node.children.y, 0x003a_3938, 0);
+        // Three children, all of them inner nodes, fill the box; there is no way out.
+        node.grid.w = node.grid.w & 0x00ff_ffff | 0x0300_0000;
+        node.children = UVec4::new(0, node.children.y, 0, 0);
         (node.x, node.y, node.z) = (WHOLE, WHOLE, WHOLE);
     }
     assert!(buffers.nodes.len() >= 3);

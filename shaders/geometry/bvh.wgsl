@@ -1,16 +1,20 @@
 // Rays against the whole scene: a compressed wide hierarchy over the instances, whose leaves lead to one within each
 // mesh (Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017).
-// A group is (base index, bits). For nodes, the high byte says which children are still to be visited, in the order
-// of the ray's octant, and the low byte which children are inner nodes; for instances of meshes, the low 24 bits say
-// which are still to be entered. So a group of meshes is at most GROUP_PRIMITIVES, and a group of nodes is more. Every
-// turn visits one node, be it the root of a mesh that is just entered, and intersects the primitives that it leads to:
-// lanes that wait for one another all wait for the same thing.
+// A group is (base index, members). Of nodes, the members are up to eight digits of four bits, CHILD + the number of the
+// child, the nearest lowest, in place of the paper's mask in the order of the ray's octant: that order visits a quarter
+// more nodes of a forest. Of instances of meshes, they are bits from FIRST_MESH upwards, the last to be entered first.
+// Every turn visits one node, be it the root of a mesh that is just entered, and intersects the primitives that it leads
+// to: lanes that wait for one another all wait for the same thing.
 
 // Groups that await their turn; src/flatten/bvh.rs builds no hierarchy that needs more.
 const TRAVERSAL_STACK: u32 = 32u;
 // Nodes that one ray may visit, over both levels.
 const TRAVERSAL_TURNS: u32 = 65536u;
-const GROUP_PRIMITIVES: u32 = 0x00ffffffu;
+// A member of a group of nodes; members of other groups don't have this bit.
+const CHILD: u32 = 8u;
+const FIRST_MESH: u32 = 16u;
+// Sorts behind every child that is met, and is no member.
+const UNMET: i32 = 0x7ffffff0;
 // 8 * 2^-24: relative error of a box's plane in quantisation, of the distance to it, and of the ray's shear.
 const BOX_ERROR: f32 = 4.7683716e-7;
 // 2^-50: components of the direction are taken to be at least this share of the largest one, so that a reciprocal
@@ -64,62 +68,53 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     var triangle_space: TriangleRay;
     var ray_origin = origin;
     let world_inverse = inverse_direction(direction);
-    let world_octant = octant_bytes(direction);
     var inverse = world_inverse;
-    var octant = world_octant;
     // The group in hand: nodes, or instances of meshes. The root, to begin with.
-    var group = vec2<u32>(select(0u, frame.mist_root, in_mist), 0x80000000u);
+    var group = vec2<u32>(select(0u, frame.mist_root, in_mist), CHILD);
     if HAS_MESH && count == 1u {
         let only = frame.plane_count + select(0u, frame.bounded_count, in_mist);
-        if instances[only].shape == SHAPE_MESH && (instances[only].flags & mask) != 0u {
-            group = vec2<u32>(only, 1u);
-        }
+        group = select(group, vec2<u32>(only, FIRST_MESH), instances[only].shape == SHAPE_MESH);
     }
 
-    let only_meshes = HAS_MESH && !(HAS_ANALYTIC || HAS_SHADOWLESS);
     for (var turn = 0u; ; turn++) {
         if turn == TRAVERSAL_TURNS {
             tally.flags |= STATUS_LOOP_BOUND;
             break;
         }
+        let is_mesh = HAS_MESH && (group.y & CHILD) == 0u;
         let bit = firstLeadingBit(group.y);
-        let is_mesh = HAS_MESH && group.y <= GROUP_PRIMITIVES;
-        let rest = group.y & ~(1u << bit);
+        let rest = select(group.y >> 4u, group.y & ~(1u << bit), is_mesh);
         // Written whether or not anything is left: what only some lanes do costs lavapipe a branch for each of them.
-        let has_rest = rest > select(GROUP_PRIMITIVES, 0u, is_mesh);
         let has_room = height < TRAVERSAL_STACK;
         stack[min(height, TRAVERSAL_STACK - 1u)] = vec2<u32>(group.x, rest);
-        height += select(0u, 1u, has_rest && has_room);
-        tally.flags |= select(0u, STATUS_STACK_FULL, has_rest && !has_room);
+        height += select(0u, 1u, rest != 0u && has_room);
+        tally.flags |= select(0u, STATUS_STACK_FULL, rest != 0u && !has_room);
 
-        let slot = (bit - 24u) ^ (octant & 7u);
-        var child = group.x + countOneBits(rest & ~(0xffffffffu << (slot & 31u)));
+        var child = group.x + (group.y & 7u);
+        var limit = nearest;
         if is_mesh {
-            instance = group.x + bit;
+            instance = group.x + bit - 4u;
             child = instances[instance].root;
             let object_from_world = instances[instance].object_from_world;
             let object_direction = transform_vector(object_from_world, direction);
             ray_origin = transform_point(object_from_world, origin);
             triangle_space = triangle_ray(ray_origin, object_direction);
             inverse = inverse_direction(object_direction);
-            octant = octant_bytes(object_direction);
             return_height = height;
+            if HAS_SHADOWLESS && (instances[instance].flags & mask) == 0u {
+                limit = MISS;
+            }
         }
         let node = nodes[child];
-        let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
-        let inner = bits & ~GROUP_PRIMITIVES;
-        group = vec2<u32>(node.children.x, select(0u, inner | (node.grid.w >> 24u), inner != 0u));
-        var primitives_left = bits & GROUP_PRIMITIVES;
-        var meshes = 0u;
-        if only_meshes && return_height == NONE {
-            meshes = primitives_left;
-            primitives_left = 0u;
-        }
+        let met = node_intersect(node, ray_origin, inverse, limit);
+        group = vec2<u32>(node.children.x, met.children);
+        let meshes = met.primitives & ((1u << (node.grid.w >> 28u)) - 1u);
+        var primitives_left = met.primitives ^ meshes;
         while primitives_left != 0u {
             let place = firstLeadingBit(primitives_left);
             primitives_left &= ~(1u << place);
             let index = node.children.y + place;
-            if HAS_MESH && return_height != NONE {
+            if HAS_MESH && (!HAS_ANALYTIC || return_height != NONE) {
                 let triangle = triangles[index];
                 let met = triangle_intersect(triangle_space, triangle.p0, triangle.p1, triangle.p2, nearest);
                 if met.t > 0.0 {
@@ -133,10 +128,6 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
                 continue;
             }
             let shape = instances[index].shape;
-            if HAS_MESH && shape == SHAPE_MESH {
-                meshes |= 1u << place;
-                continue;
-            }
             let object_from_world = instances[index].object_from_world;
             let object_origin = transform_point(object_from_world, origin);
             let object_direction = transform_vector(object_from_world, direction);
@@ -155,7 +146,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             stack[min(height, TRAVERSAL_STACK - 1u)] = group;
             height += select(0u, 1u, has_inner && has_space);
             tally.flags |= select(0u, STATUS_STACK_FULL, has_inner && !has_space);
-            group = vec2<u32>(node.children.y, meshes);
+            group = vec2<u32>(node.children.y, meshes * FIRST_MESH);
         }
         // Back among the instances, and the group that was put aside last: read whether or not it is needed, as above.
         let top = stack[max(height, 1u) - 1u];
@@ -166,7 +157,6 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             return_height = select(return_height, NONE, leaves);
             ray_origin = select(ray_origin, origin, leaves);
             inverse = select(inverse, world_inverse, leaves);
-            octant = select(octant, world_octant, leaves);
         }
         height -= select(0u, 1u, is_done);
         group = select(group, top, is_done);
@@ -181,17 +171,16 @@ fn inverse_direction(direction: vec3<f32>) -> vec3<f32> {
     return 1.0 / select(magnitude, -magnitude, direction < vec3<f32>(0.0));
 }
 
-// In each byte, which components of the direction are not negative (4 for x, 2 for y, 1 for z): children lie in the
-// slot of the octant that they fill, so slot ^ octant puts the nearest highest.
-fn octant_bytes(direction: vec3<f32>) -> u32 {
-    return select(0x04040404u, 0u, direction.x < 0.0)
-        | select(0x02020202u, 0u, direction.y < 0.0)
-        | select(0x01010101u, 0u, direction.z < 0.0);
-}
+// What a ray meets of a node's children.
+struct NodeHit {
+    // The members of the group of inner children.
+    children: u32,
+    // The primitives of leaves, a bit each.
+    primitives: u32,
+};
 
-// The children of a node that the ray meets before t_max: inner nodes in the high byte, by priority, and the
-// primitives of leaves in the low 24 bits.
-fn node_intersect(node: Node, origin: vec3<f32>, inverse: vec3<f32>, octant: u32, t_max: f32) -> u32 {
+// The children of a node whose boxes the ray's stretch from 0 to t_max meets.
+fn node_intersect(node: Node, origin: vec3<f32>, inverse: vec3<f32>, t_max: f32) -> NodeHit {
     let cell = vec3<f32>(
         bitcast<f32>((node.grid.w & 0xffu) << 23u),
         bitcast<f32>(((node.grid.w >> 8u) & 0xffu) << 23u),
@@ -212,17 +201,59 @@ fn node_intersect(node: Node, origin: vec3<f32>, inverse: vec3<f32>, octant: u32
     let near_z = select(node.z.xy, node.z.zw, negative.z);
     let far_z = select(node.z.zw, node.z.xy, negative.z);
 
-    return four_children(
-        node.children.z, octant,
-        max(max(planes(near_x.x, step.x, near.x), planes(near_y.x, step.y, near.y)), planes(near_z.x, step.z, near.z)),
-        min(min(planes(far_x.x, step.x, far.x), planes(far_y.x, step.y, far.y)), planes(far_z.x, step.z, far.z)),
-        t_max,
-    ) | four_children(
-        node.children.w, octant,
-        max(max(planes(near_x.y, step.x, near.x), planes(near_y.y, step.y, near.y)), planes(near_z.y, step.z, near.z)),
-        min(min(planes(far_x.y, step.x, far.x), planes(far_y.y, step.y, far.y)), planes(far_z.y, step.z, far.z)),
-        t_max,
+    let enter_low = max(
+        max(planes(near_x.x, step.x, near.x), planes(near_y.x, step.y, near.y)),
+        max(planes(near_z.x, step.z, near.z), vec4<i32>(0)),
     );
+    let enter_high = max(
+        max(planes(near_x.y, step.x, near.x), planes(near_y.y, step.y, near.y)),
+        max(planes(near_z.y, step.z, near.z), vec4<i32>(0)),
+    );
+    let limit = vec4<i32>(bitcast<i32>(t_max));
+    let leave_low = min(
+        min(planes(far_x.x, step.x, far.x), planes(far_y.x, step.y, far.y)),
+        min(planes(far_z.x, step.z, far.z), limit),
+    );
+    let leave_high = min(
+        min(planes(far_x.y, step.x, far.x), planes(far_y.y, step.y, far.y)),
+        min(planes(far_z.y, step.z, far.z), limit),
+    );
+    let met_low = enter_low <= leave_low;
+    let met_high = enter_high <= leave_high;
+    // Inner children come first, as src/flatten/bvh.rs has put them.
+    let inner_count = vec4<u32>((node.grid.w >> 24u) & 15u);
+    return NodeHit(
+        sorted_members(
+            select(vec4<i32>(UNMET), (enter_low & vec4<i32>(-16)) | vec4<i32>(8, 9, 10, 11),
+                met_low & (inner_count > vec4<u32>(0u, 1u, 2u, 3u))),
+            select(vec4<i32>(UNMET), (enter_high & vec4<i32>(-16)) | vec4<i32>(12, 13, 14, 15),
+                met_high & (inner_count > vec4<u32>(4u, 5u, 6u, 7u))),
+        ),
+        leaf_primitives(node.children.z, met_low) | leaf_primitives(node.children.w, met_high),
+    );
+}
+
+// The lowest four bits of eight keys, by the order of the keys, which a network of 19 comparators finds
+// (Batcher's odd-even merge sort, Knuth vol. 3, section 5.3.4).
+fn sorted_members(low: vec4<i32>, high: vec4<i32>) -> u32 {
+    let a = vec4<i32>(min(low.xy, low.zw), max(low.xy, low.zw));
+    let b = vec4<i32>(min(high.xy, high.zw), max(high.xy, high.zw));
+    let c = min(a, b);
+    let d = max(a, b);
+    // Keys 0, 2, 4, 6 and 1, 3, 5, 7 of the order so far.
+    let even = vec4<i32>(min(c.xz, c.yw), min(d.xz, d.yw));
+    let odd = vec4<i32>(max(c.xz, c.yw), max(d.xz, d.yw));
+    let k2 = min(even.y, even.z);
+    let k3 = min(odd.y, odd.z);
+    let k4 = max(even.y, even.z);
+    let k5 = max(odd.y, odd.z);
+    let l1 = min(odd.x, k4);
+    let l3 = min(k3, even.w);
+    let l4 = max(odd.x, k4);
+    let l6 = max(k3, even.w);
+    return u32(even.x & 15) | u32(min(l1, k2) & 15) << 4u | u32(max(l1, k2) & 15) << 8u
+        | u32(min(l3, l4) & 15) << 12u | u32(max(l3, l4) & 15) << 16u
+        | u32(min(k5, l6) & 15) << 20u | u32(max(k5, l6) & 15) << 24u | u32(odd.w & 15) << 28u;
 }
 
 // Where a ray meets a plane of each of four children. As integers: the order of floats that are not negative is that of
@@ -231,14 +262,10 @@ fn planes(bytes: u32, step: f32, start: f32) -> vec4<i32> {
     return bitcast<vec4<i32>>(vec4<f32>(unpack4xU8(bytes)) * step + start);
 }
 
-// Where each of four children belongs in the group, if the ray's stretch inside its box, from 0 to t_max, is not empty.
-fn four_children(meta_bytes: u32, octant: u32, near: vec4<i32>, far: vec4<i32>, t_max: f32) -> u32 {
-    // Inner children have the offsets 24 to 31, which no leaf has: both bits of 24 are set.
-    let inner_mask = (((meta_bytes & (meta_bytes << 1u)) & 0x10101010u) >> 4u) * 0xffu;
-    let shifts = (meta_bytes ^ (octant & inner_mask)) & 0x1f1f1f1fu;
-    let bits = (meta_bytes >> 5u) & 0x07070707u;
-    let t_enter = max(near, vec4<i32>(0));
-    let t_leave = min(far, vec4<i32>(bitcast<i32>(t_max)));
-    let met = select(vec4<u32>(0u), unpack4xU8(bits) << unpack4xU8(shifts), t_enter <= t_leave);
-    return met.x | met.y | met.z | met.w;
+// The primitives of those of four children that are met.
+fn leaf_primitives(meta_bytes: u32, met: vec4<bool>) -> u32 {
+    let shifts = unpack4xU8(meta_bytes & 0x1f1f1f1fu);
+    let counts = unpack4xU8((meta_bytes >> 5u) & 0x07070707u);
+    let bits = select(vec4<u32>(0u), counts << shifts, met);
+    return bits.x | bits.y | bits.z | bits.w;
 }

@@ -5,14 +5,16 @@ use crate::layout::Node;
 use glam::UVec4;
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+use obvhs::cwbvh::node::CwBvhNode;
 
 /// Groups that a ray can put aside; `shaders/geometry/bvh.wgsl` has the same constant. Where it enters a mesh it puts
 /// two aside, and `build` keeps each level of the hierarchy within half of the rest.
 pub const TRAVERSAL_STACK: u32 = 32;
 const MAX_STACK: u32 = (TRAVERSAL_STACK - 2) / 2;
 
-/// Primitives in a leaf, the most that the nodes can say.
-const MAX_LEAF: u32 = 3;
+/// Triangles in a leaf, the most that the nodes can say, and in all leaves of a node.
+const MAX_TRIANGLES: u32 = 3;
+const MAX_MEMBERS: usize = 8 * MAX_TRIANGLES as usize;
 
 /// Levels of surface-area splits; a tree that is so deep has boxes within boxes within boxes.
 const SAH_LEVELS: u32 = 48;
@@ -27,17 +29,77 @@ pub struct Hierarchy {
     pub depth: u32,
 }
 
-/// Builds the hierarchy over some boxes, which must be finite and small enough that their areas are too.
-pub fn build(boxes: &[Aabb]) -> Hierarchy {
-    let hierarchy = collapse(boxes, SAH_LEVELS);
-    // Halving by number makes trees whose depth is the logarithm of their size: 24 levels of two, 8 of eight.
-    if stack_need(&hierarchy.nodes) > MAX_STACK { collapse(boxes, 0) } else { hierarchy }
+/// Builds the hierarchy over the boxes of triangles, which must be finite and small enough that their areas are too.
+pub fn over_triangles(boxes: &[Aabb]) -> Hierarchy {
+    build(boxes, MAX_TRIANGLES, |_| false)
 }
 
-fn collapse(boxes: &[Aabb], sah_levels: u32) -> Hierarchy {
-    let wide = bvh2_to_cwbvh(&binned::build(boxes, sah_levels), MAX_LEAF, true, false);
-    let nodes: Vec<Node> = wide.nodes.iter().map(|node| bytemuck::cast(*node)).collect();
-    Hierarchy { depth: levels(&nodes).len() as u32, nodes, order: wide.primitive_indices }
+/// Builds the hierarchy over the boxes of instances, likewise. A leaf holds one, so that a ray meets the box of each.
+pub fn over_instances(boxes: &[Aabb], is_mesh: impl Fn(u32) -> bool) -> Hierarchy {
+    build(boxes, 1, is_mesh)
+}
+
+fn build(boxes: &[Aabb], max_leaf: u32, is_mesh: impl Fn(u32) -> bool) -> Hierarchy {
+    let hierarchy = collapse(boxes, SAH_LEVELS, max_leaf, &is_mesh);
+    // Halving by number makes trees whose depth is the logarithm of their size: 24 levels of two, 8 of eight.
+    if stack_need(&hierarchy.nodes) > MAX_STACK { collapse(boxes, 0, max_leaf, &is_mesh) } else { hierarchy }
+}
+
+fn collapse(boxes: &[Aabb], sah_levels: u32, max_leaf: u32, is_mesh: &impl Fn(u32) -> bool) -> Hierarchy {
+    let wide = bvh2_to_cwbvh(&binned::build(boxes, sah_levels), max_leaf, false, false);
+    let mut order = wide.primitive_indices;
+    let nodes: Vec<Node> = wide.nodes.into_iter().map(|node| children_by_kind(node, &mut order, is_mesh)).collect();
+    Hierarchy { depth: levels(&nodes).len() as u32, nodes, order }
+}
+
+/// A node in the kernel's layout: obvhs's, with the inner children in front, so that child i is node i from the first,
+/// then the leaves of meshes, and their numbers in place of a mask.
+fn children_by_kind(mut node: CwBvhNode, order: &mut [u32], is_mesh: &impl Fn(u32) -> bool) -> Node {
+    let base = node.primitive_base_idx as usize;
+    let primitives = |meta: u8| {
+        let first = base + usize::from(meta & 0x1f);
+        first..first + (meta >> 5).count_ones() as usize
+    };
+    let is_inner = |child: usize| node.imask >> child & 1 == 1;
+    let leads_to_mesh = |child: usize| {
+        order.get(primitives(node.child_meta[child])).is_some_and(|leaf| leaf.iter().any(|&i| is_mesh(i)))
+    };
+    let kind = |&child: &usize| match child {
+        child if is_inner(child) => 0,
+        child if leads_to_mesh(child) => 1,
+        _ => 2,
+    };
+    let mut children = [0, 1, 2, 3, 4, 5, 6, 7];
+    // Stable, so that inner children stay in the order of their nodes.
+    children.sort_by_key(kind);
+    let inner_count = node.imask.count_ones() as u8;
+    let mesh_count = children.iter().filter(|child| kind(child) == 1).count() as u8;
+
+    for bytes in [
+        &mut node.child_meta,
+        &mut node.child_min_x,
+        &mut node.child_max_x,
+        &mut node.child_min_y,
+        &mut node.child_max_y,
+        &mut node.child_min_z,
+        &mut node.child_max_z,
+    ] {
+        *bytes = children.map(|child| bytes[child]);
+    }
+    let (inner, leaves) = node.child_meta.split_at_mut(usize::from(inner_count));
+    inner.fill(0);
+    // The primitives in the order of their leaves.
+    let mut members = Vec::with_capacity(MAX_MEMBERS);
+    for meta in leaves {
+        let first = members.len() as u8;
+        members.extend_from_slice(&order[primitives(*meta)]);
+        if *meta != 0 {
+            *meta = *meta & 0xe0 | first;
+        }
+    }
+    order[base..base + members.len()].copy_from_slice(&members);
+    node.imask = inner_count | mesh_count << 4;
+    bytemuck::cast(node)
 }
 
 /// Appends a hierarchy whose primitives begin at `first_primitive` of their buffer.
@@ -52,7 +114,7 @@ pub fn append(nodes: &mut Vec<Node>, hierarchy: &[Node], first_primitive: u32) {
 
 /// The inner children of a node, which lie side by side.
 fn inner_children(node: &Node) -> std::ops::Range<u32> {
-    node.children.x..node.children.x + (node.grid.w >> 24).count_ones()
+    node.children.x..node.children.x + (node.grid.w >> 24 & 15)
 }
 
 /// Node indices, level by level.

@@ -117,7 +117,10 @@ fn ordered(
     let plane_count = planes.len() as u32;
     let (mists, surfaces): (Vec<u32>, Vec<u32>) =
         (0..bounded.len() as u32).partition(|&i| bounded[i as usize].flags & INSTANCE_MIST != 0);
-    let build = |members: &[u32]| bvh::build(&members.iter().map(|&i| boxes[i as usize]).collect::<Vec<_>>());
+    let build = |members: &[u32]| {
+        let boxes: Vec<Aabb> = members.iter().map(|&i| boxes[i as usize]).collect();
+        bvh::over_instances(&boxes, |i| bounded[members[i as usize] as usize].shape == SHAPE_MESH)
+    };
     let (over_surfaces, over_mists) = (build(&surfaces), build(&mists));
     let surface_count = surfaces.len() as u32;
     let mut nodes = Vec::new();

@@ -101,7 +101,7 @@ fn build(mesh: &Mesh) -> Result<BuiltMesh> {
         })
         .collect();
     let bounds = enclose(boxes.iter());
-    let hierarchy = bvh::build(&boxes);
+    let hierarchy = bvh::over_triangles(&boxes);
     let run = boxes.len().div_ceil(MAX_PARTS).max(1);
     let parts = hierarchy.order.chunks(run).map(|run| enclose(run.iter().map(|&i| &boxes[i as usize]))).collect();
     Ok(BuiltMesh {

@@ -16,7 +16,8 @@ use glam::{UVec2, UVec4, Vec3};
 /// Groups that await their turn; the builder makes no hierarchy that needs more.
 const TRAVERSAL_STACK: usize = crate::flatten::TRAVERSAL_STACK as usize;
 const TRAVERSAL_TURNS: u32 = 65_536;
-const GROUP_PRIMITIVES: u32 = 0x00ff_ffff;
+const CHILD: u32 = 8;
+const FIRST_MESH: u32 = 16;
 const BOX_ERROR: f32 = 4.768_371_6e-7;
 const MIN_DIRECTION: f32 = 8.881_784e-16;
 
@@ -102,14 +103,10 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
     let mut mesh: Option<(u32, TriangleRay, usize)> = None;
     let mut ray_origin = origin;
     let mut inverse = inverse_direction(direction);
-    let mut octant = octant_bytes(direction);
     // The group in hand: nodes, or instances of meshes. The root, to begin with.
-    let mut group = UVec2::new(root, 0x8000_0000);
-    if count == 1 {
-        let instance = &scene.instances[first as usize];
-        if instance.shape == SHAPE_MESH && instance.flags & MASK != 0 {
-            group = UVec2::new(first, 1);
-        }
+    let mut group = UVec2::new(root, CHILD);
+    if count == 1 && scene.instances[first as usize].shape == SHAPE_MESH {
+        group = UVec2::new(first, FIRST_MESH);
     }
 
     for turn in 0.. {
@@ -117,31 +114,32 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             tally.flags |= STATUS_LOOP_BOUND;
             break;
         }
+        let is_mesh = group.y & CHILD == 0;
         let bit = first_leading_bit(group.y);
-        let is_mesh = group.y <= GROUP_PRIMITIVES;
-        let rest = group.y & !(1 << bit);
-        if rest > if is_mesh { 0 } else { GROUP_PRIMITIVES } {
+        let rest = if is_mesh { group.y & !(1 << bit) } else { group.y >> 4 };
+        if rest != 0 {
             stack.push(UVec2::new(group.x, rest), tally);
         }
+        let mut limit = nearest;
         let child = if is_mesh {
-            let index = group.x + bit;
+            let index = group.x + bit - 4;
             let instance = &scene.instances[index as usize];
             let object_direction = transform_vector(&instance.object_from_world, direction);
             ray_origin = transform_point(&instance.object_from_world, origin);
             inverse = inverse_direction(object_direction);
-            octant = octant_bytes(object_direction);
             mesh = Some((index, triangle_ray(ray_origin, object_direction), stack.height));
+            if instance.flags & MASK == 0 {
+                limit = MISS;
+            }
             instance.root
         } else {
-            let slot = (bit - 24) ^ (octant & 7);
-            group.x + (rest & !(0xffff_ffff << slot)).count_ones()
+            group.x + (group.y & 7)
         };
         let node = &scene.nodes[child as usize];
-        let bits = node_intersect(node, ray_origin, inverse, octant, nearest);
-        let inner = bits & !GROUP_PRIMITIVES;
-        group = UVec2::new(node.children.x, if inner != 0 { inner | (node.grid.w >> 24) } else { 0 });
-        let mut primitives_left = bits & GROUP_PRIMITIVES;
-        let mut meshes = 0;
+        let met = node_intersect(node, ray_origin, inverse, limit);
+        group = UVec2::new(node.children.x, met.children);
+        let meshes = met.primitives & ((1 << (node.grid.w >> 28)) - 1);
+        let mut primitives_left = met.primitives ^ meshes;
         while primitives_left != 0 {
             let place = first_leading_bit(primitives_left);
             primitives_left &= !(1 << place);
@@ -162,10 +160,6 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             if instance.flags & MASK == 0 {
                 continue;
             }
-            if instance.shape == SHAPE_MESH {
-                meshes |= 1 << place;
-                continue;
-            }
             let object_origin = transform_point(&instance.object_from_world, origin);
             let object_direction = transform_vector(&instance.object_from_world, direction);
             let met = instance_intersect(scene, index, instance.shape, object_origin, object_direction, nearest);
@@ -183,14 +177,13 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             if group.y != 0 {
                 stack.push(group, tally);
             }
-            group = UVec2::new(node.children.y, meshes);
+            group = UVec2::new(node.children.y, meshes * FIRST_MESH);
         }
         if group.y == 0 {
             if mesh.as_ref().is_some_and(|(_, _, return_height)| stack.height == *return_height) {
                 mesh = None;
                 ray_origin = origin;
                 inverse = inverse_direction(direction);
-                octant = octant_bytes(direction);
             }
             match stack.pop() {
                 Some(top) => group = top,
@@ -218,19 +211,17 @@ pub fn inverse_direction(direction: Vec3) -> Vec3 {
     Vec3::new(reciprocal(direction.x), reciprocal(direction.y), reciprocal(direction.z))
 }
 
-/// In each byte, which components of the direction are not negative (4 for x, 2 for y, 1 for z): children lie in the
-/// slot of the octant that they fill, so slot ^ octant puts the nearest highest.
-#[inline]
-pub fn octant_bytes(direction: Vec3) -> u32 {
-    (if direction.x < 0.0 { 0 } else { 0x0404_0404 })
-        | (if direction.y < 0.0 { 0 } else { 0x0202_0202 })
-        | (if direction.z < 0.0 { 0 } else { 0x0101_0101 })
+/// What a ray meets of a node's children.
+pub struct NodeHit {
+    /// The members of the group of inner children.
+    pub children: u32,
+    /// The primitives of leaves, a bit each.
+    pub primitives: u32,
 }
 
-/// The children of a node that the ray meets before t_max: inner nodes in the high byte, by priority, and the
-/// primitives of leaves in the low 24 bits.
+/// The children of a node whose boxes the ray's stretch from 0 to t_max meets.
 #[inline]
-pub fn node_intersect(node: &Node, origin: Vec3, inverse: Vec3, octant: u32, t_max: f32) -> u32 {
+pub fn node_intersect(node: &Node, origin: Vec3, inverse: Vec3, t_max: f32) -> NodeHit {
     let cell = Vec3::new(
         f32::from_bits((node.grid.w & 0xff) << 23),
         f32::from_bits(((node.grid.w >> 8) & 0xff) << 23),
@@ -248,8 +239,9 @@ pub fn node_intersect(node: &Node, origin: Vec3, inverse: Vec3, octant: u32, t_m
     let (near_y, far_y) = near_and_far(node.y, inverse.y);
     let (near_z, far_z) = near_and_far(node.z, inverse.z);
     let mut met = 0;
+    let mut enter = [0.0f32; 8];
     for i in 0..8 {
-        let t_enter = larger(
+        enter[i] = larger(
             larger(near_x[i] * step.x + near.x, near_y[i] * step.y + near.y),
             larger(near_z[i] * step.z + near.z, 0.0),
         );
@@ -257,25 +249,43 @@ pub fn node_intersect(node: &Node, origin: Vec3, inverse: Vec3, octant: u32, t_m
             smaller(far_x[i] * step.x + far.x, far_y[i] * step.y + far.y),
             smaller(far_z[i] * step.z + far.z, t_max),
         );
-        met |= u32::from(t_enter <= t_leave) << i;
+        met |= u32::from(enter[i] <= t_leave) << i;
     }
-    child_bits(node, octant, met)
+    // Inner children come first, as src/flatten/bvh.rs has put them.
+    let inner_mask = (1 << (node.grid.w >> 24 & 15)) - 1;
+    NodeHit { children: sorted_members(&enter, met & inner_mask), primitives: leaf_primitives(node, met & !inner_mask) }
 }
 
-/// Where each of the children that are met (bit i: child i) belongs in the group.
+/// The members of the group of inner children that are met (bit i: child i), by where the ray enters them.
 #[inline]
-fn child_bits(node: &Node, octant: u32, mut met: u32) -> u32 {
+fn sorted_members(enter: &[f32; 8], mut met: u32) -> u32 {
+    let mut keys = [0; 8];
+    let mut count = 0;
+    while met != 0 {
+        let child = met.trailing_zeros() & 7;
+        met &= met - 1;
+        let key = enter[child as usize].to_bits() & !15 | CHILD | child;
+        // Few are met, so they are inserted one by one.
+        let mut place = count & 7;
+        while place > 0 && keys[place - 1] > key {
+            keys[place] = keys[place - 1];
+            place -= 1;
+        }
+        keys[place] = key;
+        count += 1;
+    }
+    keys.iter().take(count).rev().fold(0, |members, key| members << 4 | key & 15)
+}
+
+/// The primitives of leaves that are met (bit i: child i).
+#[inline]
+fn leaf_primitives(node: &Node, mut met: u32) -> u32 {
     let meta_bytes = u64::from(node.children.z) | (u64::from(node.children.w) << 32);
-    let octant = u64::from(octant) | (u64::from(octant) << 32);
-    // Inner children have the offsets 24 to 31, which no leaf has: both bits of 24 are set.
-    let inner_mask = (((meta_bytes & (meta_bytes << 1)) & 0x1010_1010_1010_1010) >> 4) * 0xff;
-    let shifts = (meta_bytes ^ (octant & inner_mask)) & 0x1f1f_1f1f_1f1f_1f1f;
-    let bits = (meta_bytes >> 5) & 0x0707_0707_0707_0707;
     let mut result = 0;
     while met != 0 {
-        let byte = 8 * met.trailing_zeros();
+        let meta = (meta_bytes >> (8 * met.trailing_zeros())) as u32;
         met &= met - 1;
-        result |= ((bits >> byte) as u32 & 0xff) << ((shifts >> byte) as u32 & 0x1f);
+        result |= ((meta >> 5) & 7) << (meta & 0x1f);
     }
     result
 }
