@@ -1,9 +1,7 @@
 // Group 0, the only one: two uniforms and the eight storage buffers that WebGPU guarantees.
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> dispatch: Dispatch;
-@group(0) @binding(2) var<storage, read> nodes: array<Node>;
-@group(0) @binding(3) var<storage, read> instances: array<Instance>;
-@group(0) @binding(4) var<storage, read> triangles: array<Triangle>;
+// Bindings 2 to 4 are in loads/words.wgsl or loads/pairs.wgsl.
 @group(0) @binding(5) var<storage, read> materials: array<Material>;
 @group(0) @binding(6) var<storage, read> lights: array<Light>;
 @group(0) @binding(7) var<storage, read> texels: array<u32>;

@@ -21,10 +21,11 @@ macro_rules! parts {
     };
 }
 
-/// The renderer's shaders. A new file is listed here and nowhere else.
+/// The renderer's shaders, as every device can run them. A new file is listed here and nowhere else.
 pub const PARTS: &[Part<'static>] = parts![
     "types.wgsl"
     "bindings.wgsl"
+    "loads/words.wgsl"
     "tally.wgsl"
     "blocks.wgsl"
     "math/elementary.wgsl"
@@ -60,6 +61,37 @@ pub const PARTS: &[Part<'static>] = parts![
     "kernels/render.wgsl"
 ];
 
+/// Takes the place of the part that it has the functions of.
+const PAIRS: (&str, &[Part<'static>]) = ("shaders/loads/words.wgsl", parts!["loads/pairs.wgsl"]);
+
+/// How a kernel loads nodes, instances and triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loads {
+    /// By words of 32 bits, as core WebGPU has them (`shaders/loads/words.wgsl`).
+    Words,
+    /// By integers of 64 bits, where the device has them (`shaders/loads/pairs.wgsl`).
+    Pairs,
+}
+
+impl Loads {
+    /// [`PARTS`] with these loads.
+    pub fn parts(self) -> Vec<Part<'static>> {
+        let (words, pairs) = PAIRS;
+        match self {
+            Loads::Words => PARTS.to_vec(),
+            Loads::Pairs => PARTS.iter().filter(|part| part.path != words).chain(pairs).copied().collect(),
+        }
+    }
+
+    /// What the parts need beyond core WebGPU.
+    fn capabilities(self) -> Capabilities {
+        match self {
+            Loads::Words => Capabilities::empty(),
+            Loads::Pairs => Capabilities::SHADER_INT64,
+        }
+    }
+}
+
 /// The entry point of `shaders/kernels/render.wgsl`.
 pub const RENDER_ENTRY_POINT: &str = "render";
 
@@ -82,6 +114,22 @@ impl Program {
     /// # Errors
     /// [`Error::Shader`], starting with the path, line and column of the part that the error lies in.
     pub fn link(parts: &[Part]) -> Result<Program> {
+        // No capability beyond core WebGPU, so that the program runs wherever wgpu does.
+        Program::link_with(parts, Capabilities::empty())
+    }
+
+    /// The renderer's own program and further parts, for a device that [`Device::loads`] says this of.
+    ///
+    /// # Errors
+    /// [`Error::Shader`] as for [`Program::link`].
+    ///
+    /// [`Device::loads`]: crate::gpu::Device::loads
+    pub fn renderer(loads: Loads, further: &[Part]) -> Result<Program> {
+        let parts: Vec<Part> = loads.parts().into_iter().chain(further.iter().copied()).collect();
+        Program::link_with(&parts, loads.capabilities())
+    }
+
+    fn link_with(parts: &[Part], capabilities: Capabilities) -> Result<Program> {
         let text = JoinedText::new(parts)?;
         let module = naga::front::wgsl::parse_str(&text.source).map_err(|error| {
             let mut labels = error.labels();
@@ -95,18 +143,10 @@ impl Program {
             }
             Error::Shader(message)
         })?;
-        let info = validator()
+        let info = Validator::new(ValidationFlags::all(), capabilities)
             .validate(&module)
             .map_err(|error| Error::Shader(text.describe(narrowest_span(&error), &chain(error.as_inner()))))?;
         Ok(Program { text, module, info })
-    }
-
-    /// The renderer's own program, [`PARTS`].
-    ///
-    /// # Errors
-    /// [`Error::Shader`] as for [`Program::link`].
-    pub fn renderer() -> Result<Program> {
-        Program::link(PARTS)
     }
 
     /// The joined WGSL source.
@@ -179,11 +219,6 @@ impl JoinedText {
         });
         format!("{}{message}", place.unwrap_or_default())
     }
-}
-
-fn validator() -> Validator {
-    // No capability beyond core WebGPU, so that the program runs wherever wgpu does.
-    Validator::new(ValidationFlags::all(), Capabilities::empty())
 }
 
 /// naga lists spans from the whole function down to the expression; the shortest points best.

@@ -57,9 +57,9 @@ fn open_device() -> Device {
 }
 
 fn renderer(device: Device, kernel: &'static str, entry_point: &str, checked: bool) -> GpuRenderer {
-    let shared = ["shaders/types.wgsl", "shaders/bindings.wgsl", "shaders/blocks.wgsl"]
-        .map(|path| part(path).expect("a shared part"));
-    let parts = [shared[0], shared[1], shared[2], Part { path: "tests/gpu.wgsl", text: kernel }];
+    let shared = ["types", "bindings", "loads/words", "blocks"];
+    let shared = shared.map(|name| part(&format!("shaders/{name}.wgsl")).expect("a shared part"));
+    let parts = [&shared[..], &[Part { path: "tests/gpu.wgsl", text: kernel }]].concat();
     let program = Program::link(&parts).unwrap_or_else(|error| panic!("{error}"));
     GpuRenderer::with_program(device, GpuOptions { checked }, program, entry_point)
 }

@@ -4,9 +4,14 @@ use crate::support::{Stage, paint, render_whole, render_with};
 use glam::{DAffine3, DVec3, Vec3};
 use gpu_trace::device::DeviceChoice;
 use gpu_trace::film::{Comparison, Film, compare_images};
+use gpu_trace::flatten::flatten;
+use gpu_trace::gpu::{Device, DeviceSelector, GpuOptions, GpuRenderer};
+use gpu_trace::render::{RenderOptions, Unattended, render};
 use gpu_trace::scene::{LightExtent, Material, Scene, Shape};
 use gpu_trace::script::{ScriptOptions, load_scene};
+use gpu_trace::shader::{Loads, Program, RENDER_ENTRY_POINT};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Pictures of the scenes are rendered this wide here, with this many camera samples.
 const WIDTH: u32 = 200;
@@ -87,6 +92,27 @@ fn mixed_stage() -> Stage {
     stage.add_light(DVec3::new(-3.0, 5.0, 0.0), Vec3::splat(0.6), LightExtent::Classic);
     stage.add_light(DVec3::new(4.0, 4.0, -2.0), Vec3::splat(0.4), LightExtent::Sphere { radius: 0.7 });
     stage
+}
+
+/// Software devices are given loads by pairs; what other devices are given has to do the same.
+#[test]
+fn loads_by_words_and_by_pairs_give_the_identical_film() {
+    for file in ["scenes/texture.lua", "scenes/waterfall.lua", "scenes/cylinder-torus.lua"] {
+        let mut scene = reduced_scenes(Path::new(file)).swap_remove(0);
+        scene.size = [64, 64 * scene.size[1] / scene.size[0]];
+        let buffers = Arc::new(flatten(&scene).unwrap_or_else(|error| panic!("{error}")));
+        let [words, pairs] = [Loads::Words, Loads::Pairs].map(|loads| {
+            let device = Device::open(&DeviceSelector::Software).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(device.loads(), Loads::Pairs);
+            let program = Program::renderer(loads, &[]).unwrap_or_else(|error| panic!("{error}"));
+            let options = GpuOptions { checked: false };
+            let mut renderer = GpuRenderer::with_program(device, options, program, RENDER_ENTRY_POINT);
+            let options = RenderOptions::whole(&buffers);
+            render(buffers.clone(), &mut renderer, &options, &mut Unattended).unwrap_or_else(|error| panic!("{error}"))
+        });
+        assert!(words.film.pixels.iter().any(|pixel| pixel[0] > 0), "{file}: the picture is black");
+        assert!(words.film == pairs.film && words.tally == pairs.tally, "{file}");
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use gpu_trace::Error;
 use gpu_trace::flatten::{FeatureSet, flatten};
 use gpu_trace::gpu::probe::LOOP_PROBE;
 use gpu_trace::script::{ScriptOptions, load_scene};
-use gpu_trace::shader::{PARTS, Part, Program, RENDER_ENTRY_POINT};
+use gpu_trace::shader::{Loads, PARTS, Part, Program, RENDER_ENTRY_POINT};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -45,25 +45,37 @@ fn files_under(folder: &Path, found: &mut BTreeSet<String>) {
 fn every_file_under_shaders_is_linked() {
     let mut on_disk = BTreeSet::new();
     files_under(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), &mut on_disk);
-    let linked: BTreeSet<String> = PARTS.iter().chain([&LOOP_PROBE]).map(|part| part.path.to_owned()).collect();
+    let parts = Loads::Pairs.parts();
+    let linked: BTreeSet<String> =
+        PARTS.iter().chain(&parts).chain([&LOOP_PROBE]).map(|part| part.path.to_owned()).collect();
     assert_eq!(on_disk, linked);
 }
 
 #[test]
 fn the_program_validates_with_every_feature_alone_on_and_alone_off() {
-    let program = Program::renderer().unwrap();
-    let names = override_names(&program);
-    assert!(names.len() >= 12, "only {} overrides", names.len());
-    let validate = |value: &dyn Fn(usize) -> bool| {
-        let overrides: Vec<_> = names.iter().enumerate().map(|(i, name)| (name.as_str(), value(i))).collect();
-        program.validate_permutation(RENDER_ENTRY_POINT, &overrides).unwrap();
-    };
-    validate(&|_| true);
-    validate(&|_| false);
-    for chosen in 0..names.len() {
-        validate(&|i| i == chosen);
-        validate(&|i| i != chosen);
+    for loads in [Loads::Words, Loads::Pairs] {
+        let program = Program::renderer(loads, &[]).unwrap();
+        let names = override_names(&program);
+        assert!(names.len() >= 12, "only {} overrides", names.len());
+        let validate = |value: &dyn Fn(usize) -> bool| {
+            let overrides: Vec<_> = names.iter().enumerate().map(|(i, name)| (name.as_str(), value(i))).collect();
+            program.validate_permutation(RENDER_ENTRY_POINT, &overrides).unwrap();
+        };
+        validate(&|_| true);
+        validate(&|_| false);
+        for chosen in 0..names.len() {
+            validate(&|i| i == chosen);
+            validate(&|i| i != chosen);
+        }
     }
+}
+
+/// Devices without integers of 64 bits can run what they are given.
+#[test]
+fn only_loads_by_pairs_need_more_than_core_webgpu() {
+    Program::link(&Loads::Words.parts()).unwrap();
+    let message = shader_error(&Loads::Pairs.parts());
+    assert!(message.contains("SHADER_INT64"), "{message}");
 }
 
 #[test]
@@ -71,7 +83,7 @@ fn the_program_does_not_depend_on_the_order_of_its_parts() {
     let mut parts = PARTS.to_vec();
     parts.reverse();
     let reversed = Program::link(&parts).unwrap();
-    let program = Program::renderer().unwrap();
+    let program = Program::renderer(Loads::Words, &[]).unwrap();
     assert_eq!(reversed.module().functions.len(), program.module().functions.len());
     assert_eq!(reversed.module().entry_points.len(), program.module().entry_points.len());
     reversed.validate_permutation(RENDER_ENTRY_POINT, &[]).unwrap();
@@ -144,7 +156,7 @@ override DIVIDED: u32 = 1u / select(0u, 1u, HAS_A);
 
 #[test]
 fn every_override_is_a_feature() {
-    let program = Program::renderer().unwrap();
+    let program = Program::renderer(Loads::Words, &[]).unwrap();
     let declared: BTreeSet<String> = override_names(&program).into_iter().collect();
     let set: BTreeSet<String> = FeatureSet::ALL_ON.overrides().into_iter().map(|(name, _)| name.to_owned()).collect();
     assert_eq!(declared, set);
@@ -155,7 +167,7 @@ fn every_override_is_a_feature() {
 /// The permutations that users meet first.
 #[test]
 fn the_program_validates_with_the_features_of_every_scene() {
-    let program = Program::renderer().unwrap();
+    let program = Program::renderer(Loads::Words, &[]).unwrap();
     let mut permutations = BTreeSet::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     for entry in std::fs::read_dir(folder).unwrap() {

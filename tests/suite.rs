@@ -40,3 +40,4 @@ mod textures;
 mod traversal;
 mod traversal_gpu;
 mod triangles;
+mod visiting_order;

@@ -10,7 +10,7 @@ use gpu_trace::flatten::SceneBuffers;
 use gpu_trace::gpu::{Device, DeviceSelector, GpuOptions, GpuRenderer};
 use gpu_trace::layout::Dispatch;
 use gpu_trace::renderer::{Renderer, Tally};
-use gpu_trace::shader::{PARTS, Part, Program};
+use gpu_trace::shader::{Part, Program};
 use std::sync::Arc;
 
 /// Reads rays from `texels`, eight words each, and writes two film pixels for each.
@@ -55,9 +55,8 @@ struct Found {
 
 fn found_on_gpu(buffers: &SceneBuffers, rays: &[Ray], source: &str) -> Vec<Found> {
     let device = Device::open(&DeviceSelector::Any).unwrap_or_else(|error| panic!("{error}"));
-    let mut parts = PARTS.to_vec();
-    parts.push(Part { path: "tests/traversal.wgsl", text: source });
-    let program = Program::link(&parts).unwrap_or_else(|error| panic!("{error}"));
+    let kernel = Part { path: "tests/traversal.wgsl", text: source };
+    let program = Program::renderer(device.loads(), &[kernel]).unwrap_or_else(|error| panic!("{error}"));
     let options = GpuOptions { checked: false };
     let mut renderer = GpuRenderer::with_program(device, options, program, "trace_rays");
 

@@ -18,7 +18,7 @@ use gpu_trace::flatten::{SceneBuffers, flatten};
 use gpu_trace::gpu::{Device, DeviceSelector, GpuOptions, GpuRenderer};
 use gpu_trace::layout::Dispatch;
 use gpu_trace::renderer::{Renderer, Tally};
-use gpu_trace::shader::{PARTS, Part, Program};
+use gpu_trace::shader::{Part, Program};
 use rayon::prelude::*;
 use std::f32::consts::TAU;
 use std::process::ExitCode;
@@ -115,15 +115,11 @@ struct Gpu {
 
 impl Gpu {
     fn new(buffers: Arc<SceneBuffers>) -> Result<Self> {
-        let parts: Vec<Part> = PARTS
-            .iter()
-            .copied()
-            .chain([Part { path: "benches/rays/rays.wgsl", text: include_str!("rays.wgsl") }])
-            .collect();
+        let walk = Part { path: "benches/rays/rays.wgsl", text: include_str!("rays.wgsl") };
         let device = Device::open(&DeviceSelector::Any)?;
+        let program = Program::renderer(device.loads(), &[walk])?;
         let name = format!("{} ({})", device.description().name, device.description().driver);
-        let mut renderer =
-            GpuRenderer::with_program(device, GpuOptions { checked: false }, Program::link(&parts)?, "walk");
+        let mut renderer = GpuRenderer::with_program(device, GpuOptions { checked: false }, program, "walk");
         renderer.prepare(buffers.clone())?;
         renderer.begin_band(0..EDGE)?;
         Ok(Gpu { name, renderer, buffers })

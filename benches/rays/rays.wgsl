@@ -46,7 +46,7 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             bounce = 0u;
             continue;
         }
-        let triangle = triangles[hit.primitive];
+        let triangle = triangle_at(hit.primitive);
         var normal = triangle_geometric_normal(triangle.p0, triangle.p1, triangle.p2);
         normal = select(normal, -normal, dot(normal, direction) > 0.0);
         origin += hit.t * direction + 1e-3 * normal;

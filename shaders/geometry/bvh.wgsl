@@ -42,11 +42,11 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     var nearest = t_max;
     if HAS_PLANE {
         for (var i = 0u; i < frame.plane_count; i++) {
-            if (HAS_MIST || HAS_SHADOWLESS) && (instances[i].flags & mask) == 0u {
+            if (HAS_MIST || HAS_SHADOWLESS) && (flags_of(i) & mask) == 0u {
                 continue;
             }
-            let object_origin = transform_point(instances[i].object_from_world, origin);
-            let object_direction = transform_vector(instances[i].object_from_world, direction);
+            let object_origin = transform_point(object_from_world_of(i), origin);
+            let object_direction = transform_vector(object_from_world_of(i), direction);
             let plane = plane_intersect(object_origin, object_direction, nearest);
             if plane.t > 0.0 {
                 hit = Hit(plane.t, i, plane.face, 0.0, 0.0);
@@ -73,7 +73,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     var group = vec2<u32>(select(0u, frame.mist_root, in_mist), CHILD);
     if HAS_MESH && count == 1u {
         let only = frame.plane_count + select(0u, frame.bounded_count, in_mist);
-        group = select(group, vec2<u32>(only, FIRST_MESH), instances[only].shape == SHAPE_MESH);
+        group = select(group, vec2<u32>(only, FIRST_MESH), shape_of(only) == SHAPE_MESH);
     }
 
     for (var turn = 0u; ; turn++) {
@@ -94,18 +94,18 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         var limit = nearest;
         if is_mesh {
             instance = group.x + bit - 4u;
-            child = instances[instance].root;
-            let object_from_world = instances[instance].object_from_world;
+            child = root_of(instance);
+            let object_from_world = object_from_world_of(instance);
             let object_direction = transform_vector(object_from_world, direction);
             ray_origin = transform_point(object_from_world, origin);
             triangle_space = triangle_ray(ray_origin, object_direction);
             inverse = inverse_direction(object_direction);
             return_height = height;
-            if HAS_SHADOWLESS && (instances[instance].flags & mask) == 0u {
+            if HAS_SHADOWLESS && (flags_of(instance) & mask) == 0u {
                 limit = MISS;
             }
         }
-        let node = nodes[child];
+        let node = node_at(child);
         let met = node_intersect(node, ray_origin, inverse, limit);
         group = vec2<u32>(node.children.x, met.children);
         let meshes = met.primitives & ((1u << (node.grid.w >> 28u)) - 1u);
@@ -115,7 +115,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             primitives_left &= ~(1u << place);
             let index = node.children.y + place;
             if HAS_MESH && (!HAS_ANALYTIC || return_height != NONE) {
-                let triangle = triangles[index];
+                let triangle = triangle_at(index);
                 let met = triangle_intersect(triangle_space, triangle.p0, triangle.p1, triangle.p2, nearest);
                 if met.t > 0.0 {
                     hit = Hit(met.t, instance, index, met.b1, met.b2);
@@ -124,11 +124,11 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
                 }
                 continue;
             }
-            if HAS_SHADOWLESS && (instances[index].flags & mask) == 0u {
+            if HAS_SHADOWLESS && (flags_of(index) & mask) == 0u {
                 continue;
             }
-            let shape = instances[index].shape;
-            let object_from_world = instances[index].object_from_world;
+            let shape = shape_of(index);
+            let object_from_world = object_from_world_of(index);
             let object_origin = transform_point(object_from_world, origin);
             let object_direction = transform_vector(object_from_world, direction);
             let met = instance_intersect(index, shape, object_origin, object_direction, nearest);

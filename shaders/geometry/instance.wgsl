@@ -49,7 +49,7 @@ fn instance_intersect(index: u32, shape: u32, origin: vec3<f32>, direction: vec3
             if HAS_CONE { hit = cone_intersect(origin, direction, t_max); }
         }
         case SHAPE_TORUS: {
-            if HAS_TORUS { hit = torus_intersect(origin, direction, t_max, instances[index].parameters.xy); }
+            if HAS_TORUS { hit = torus_intersect(origin, direction, t_max, parameters_of(index).xy); }
         }
         default: {}
     }
@@ -58,13 +58,13 @@ fn instance_intersect(index: u32, shape: u32, origin: vec3<f32>, direction: vec3
 
 // The surface at a hit of the world-space ray (origin, direction).
 fn surface_at(hit: Hit, origin: vec3<f32>, direction: vec3<f32>) -> Surface {
-    let object_from_world = instances[hit.instance].object_from_world;
+    let object_from_world = object_from_world_of(hit.instance);
     let object_direction = transform_vector(object_from_world, direction);
     var point = transform_point(object_from_world, origin) + hit.t * object_direction;
     var normal = vec3<f32>(0.0, 1.0, 0.0);
     var is_smooth = false;
     var smooth_normal = vec3<f32>(0.0, 1.0, 0.0);
-    switch instances[hit.instance].shape {
+    switch shape_of(hit.instance) {
         case SHAPE_SPHERE: {
             if HAS_SPHERE {
                 point = sphere_project(point, hit.primitive);
@@ -91,7 +91,7 @@ fn surface_at(hit: Hit, origin: vec3<f32>, direction: vec3<f32>) -> Surface {
         }
         case SHAPE_TORUS: {
             if HAS_TORUS {
-                let radii = instances[hit.instance].parameters.xy;
+                let radii = parameters_of(hit.instance).xy;
                 point = torus_project(point, hit.primitive, radii);
                 normal = torus_normal(point, hit.primitive, radii);
             }
@@ -104,7 +104,7 @@ fn surface_at(hit: Hit, origin: vec3<f32>, direction: vec3<f32>) -> Surface {
         }
         case SHAPE_MESH: {
             if HAS_MESH {
-                let triangle = triangles[hit.primitive];
+                let triangle = triangle_at(hit.primitive);
                 let b0 = 1.0 - hit.b1 - hit.b2;
                 point = b0 * triangle.p0 + hit.b1 * triangle.p1 + hit.b2 * triangle.p2;
                 normal = triangle_geometric_normal(triangle.p0, triangle.p1, triangle.p2);
@@ -127,11 +127,11 @@ fn surface_at(hit: Hit, origin: vec3<f32>, direction: vec3<f32>) -> Surface {
         shading_normal = select(shading_normal, -shading_normal, side < 0.0);
     }
     return Surface(
-        transform_point(instances[hit.instance].world_from_object, point),
+        transform_point(world_from_object_of(hit.instance), point),
         geometric_normal,
         shading_normal,
         entering,
-        instances[hit.instance].material,
-        materials[instances[hit.instance].material].diffuse,
+        material_of(hit.instance),
+        materials[material_of(hit.instance)].diffuse,
     );
 }

@@ -3,11 +3,11 @@
 
 // In world space; the tangents are not of unit length, but the true derivatives of the point.
 fn parameterise_at(hit: Hit, surface: Surface) -> Parameterisation {
-    let point = transform_point(instances[hit.instance].object_from_world, surface.point);
+    let point = transform_point(object_from_world_of(hit.instance), surface.point);
     // Once for all shapes that share it: it costs much code.
     let around = revolution(point);
     var result = Parameterisation(vec2<f32>(0.0), vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 0.0, 1.0));
-    switch instances[hit.instance].shape {
+    switch shape_of(hit.instance) {
         case SHAPE_SPHERE: {
             if HAS_SPHERE { result = sphere_parameterise(point, hit.primitive, around); }
         }
@@ -22,7 +22,7 @@ fn parameterise_at(hit: Hit, surface: Surface) -> Parameterisation {
         }
         case SHAPE_TORUS: {
             if HAS_TORUS {
-                result = torus_parameterise(point, hit.primitive, around, instances[hit.instance].parameters.xy);
+                result = torus_parameterise(point, hit.primitive, around, parameters_of(hit.instance).xy);
             }
         }
         case SHAPE_PLANE: {
@@ -30,16 +30,16 @@ fn parameterise_at(hit: Hit, surface: Surface) -> Parameterisation {
         }
         case SHAPE_MESH: {
             if HAS_MESH {
-                let triangle = triangles[hit.primitive];
+                let triangle = triangle_at(hit.primitive);
                 result = triangle_parameterise(
                     triangle.p0, triangle.p1, triangle.p2, triangle.uv0, triangle.uv1, triangle.uv2, hit.b1, hit.b2,
-                    instances[hit.instance].parameters,
+                    parameters_of(hit.instance),
                 );
             }
         }
         default: {}
     }
-    let world_from_object = instances[hit.instance].world_from_object;
+    let world_from_object = world_from_object_of(hit.instance);
     return Parameterisation(
         result.uv,
         transform_vector(world_from_object, result.dpdu),

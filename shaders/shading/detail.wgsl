@@ -35,11 +35,11 @@ fn surface_detail(hit: Hit, surface: Surface, direction: vec3<f32>, cone_width: 
     if bumped {
         // In object space, so that bumps grow with the shape. Heights rise out of the shape: the inner side, whose
         // normals point inwards, shows dents.
-        let object_from_world = instances[hit.instance].object_from_world;
+        let object_from_world = object_from_world_of(hit.instance);
         parameterisation.dpdu = transform_vector(object_from_world, parameterisation.dpdu);
         parameterisation.dpdv = transform_vector(object_from_world, parameterisation.dpdv);
         let side = select(-1.0, 1.0, surface.entering);
-        let outward = transform_normal(instances[hit.instance].world_from_object, side * surface.shading_normal);
+        let outward = transform_normal(world_from_object_of(hit.instance), side * surface.shading_normal);
         let turned = bump_normal(material, parameterisation, outward, footprint);
         let normal = side * transform_normal(object_from_world, turned);
         detailed.shading_normal = visible_normal(normal, surface.geometric_normal, -direction);

@@ -1,5 +1,6 @@
 //! Finding a device and opening it, and turning what goes wrong on it into errors.
 
+use crate::shader::Loads;
 use crate::{Error, Result};
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -155,6 +156,7 @@ pub struct Device {
     pub(super) queue: wgpu::Queue,
     description: Description,
     limits: DeviceLimits,
+    loads: Loads,
     faults: Arc<Mutex<Faults>>,
 }
 
@@ -202,6 +204,11 @@ impl Device {
 
     pub fn limits(&self) -> &DeviceLimits {
         &self.limits
+    }
+
+    /// How its kernels load nodes, instances and triangles; those that load by words work too.
+    pub fn loads(&self) -> Loads {
+        self.loads
     }
 
     /// Gives the device's memory back now; whatever is tried on it or its clones afterwards is an error.
@@ -262,9 +269,15 @@ fn open_adapter(description: &Description, adapter: &wgpu::Adapter, storage_bind
     if given < needed {
         return Err(Error::Device(format!("{name} gives a kernel {given} storage buffers; {needed} are needed")));
     }
+    let loads = match description.kind {
+        DeviceKind::Software if adapter.features().contains(features_for(Loads::Pairs)) => Loads::Pairs,
+        // A GPU loads 16 bytes at once as it is.
+        _ => Loads::Words,
+    };
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("gpu-trace"),
         required_limits: limits,
+        required_features: features_for(loads),
         // A renderer makes few and large buffers.
         memory_hints: wgpu::MemoryHints::MemoryUsage,
         ..Default::default()
@@ -289,7 +302,14 @@ fn open_adapter(description: &Description, adapter: &wgpu::Adapter, storage_bind
         });
     });
     let limits = device.limits().into();
-    Ok(Device { device, queue, description: description.clone(), limits, faults })
+    Ok(Device { device, queue, description: description.clone(), limits, loads, faults })
+}
+
+fn features_for(loads: Loads) -> wgpu::Features {
+    match loads {
+        Loads::Words => wgpu::Features::empty(),
+        Loads::Pairs => wgpu::Features::SHADER_INT64,
+    }
 }
 
 fn no_device<'a>(selector: &DeviceSelector, found: impl Iterator<Item = &'a Description>) -> Error {

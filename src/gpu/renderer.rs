@@ -41,7 +41,8 @@ impl GpuRenderer {
     /// # Errors
     /// [`Error::Shader`] where the shaders are not valid.
     pub fn new(device: Device, options: GpuOptions) -> Result<Self> {
-        Ok(GpuRenderer::with_program(device, options, Program::renderer()?, RENDER_ENTRY_POINT))
+        let program = Program::renderer(device.loads(), &[])?;
+        Ok(GpuRenderer::with_program(device, options, program, RENDER_ENTRY_POINT))
     }
 
     /// A renderer with another kernel, which has to use the bindings of `shaders/bindings.wgsl` and workgroups of 64
