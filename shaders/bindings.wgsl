@@ -1,7 +1,7 @@
 // Group 0, the only one: two uniforms and the eight storage buffers that WebGPU guarantees.
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> dispatch: Dispatch;
-// Bindings 2 to 4 are in loads/words.wgsl or loads/pairs.wgsl.
+// Bindings 2 to 4 are in memory/words/buffers.wgsl or memory/pairs/buffers.wgsl.
 @group(0) @binding(5) var<storage, read> materials: array<Material>;
 @group(0) @binding(6) var<storage, read> lights: array<Light>;
 @group(0) @binding(7) var<storage, read> texels: array<u32>;

@@ -25,7 +25,8 @@ macro_rules! parts {
 pub const PARTS: &[Part<'static>] = parts![
     "types.wgsl"
     "bindings.wgsl"
-    "loads/words.wgsl"
+    "memory/words/buffers.wgsl"
+    "memory/words/stack.wgsl"
     "tally.wgsl"
     "blocks.wgsl"
     "math/elementary.wgsl"
@@ -61,33 +62,35 @@ pub const PARTS: &[Part<'static>] = parts![
     "kernels/render.wgsl"
 ];
 
-/// Takes the place of the part that it has the functions of.
-const PAIRS: (&str, &[Part<'static>]) = ("shaders/loads/words.wgsl", parts!["loads/pairs.wgsl"]);
+/// Have the functions of those in [`WORDS`], and take their place.
+const PAIRS: &[Part<'static>] = parts!["memory/pairs/buffers.wgsl" "memory/pairs/stack.wgsl"];
+const WORDS: &str = "shaders/memory/words/";
 
-/// How a kernel loads nodes, instances and triangles.
+/// How a kernel reaches what it reads and writes most: nodes, instances, triangles, and the stack of the traversal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Loads {
-    /// By words of 32 bits, as core WebGPU has them (`shaders/loads/words.wgsl`).
+pub enum MemoryAccess {
+    /// By words of 32 bits, as core WebGPU has them (`shaders/memory/words`).
     Words,
-    /// By integers of 64 bits, where the device has them (`shaders/loads/pairs.wgsl`).
+    /// By integers of 64 bits, where the device has them (`shaders/memory/pairs`).
     Pairs,
 }
 
-impl Loads {
-    /// [`PARTS`] with these loads.
+impl MemoryAccess {
+    /// [`PARTS`] with this access.
     pub fn parts(self) -> Vec<Part<'static>> {
-        let (words, pairs) = PAIRS;
         match self {
-            Loads::Words => PARTS.to_vec(),
-            Loads::Pairs => PARTS.iter().filter(|part| part.path != words).chain(pairs).copied().collect(),
+            MemoryAccess::Words => PARTS.to_vec(),
+            MemoryAccess::Pairs => {
+                PARTS.iter().filter(|part| !part.path.starts_with(WORDS)).chain(PAIRS).copied().collect()
+            }
         }
     }
 
     /// What the parts need beyond core WebGPU.
     fn capabilities(self) -> Capabilities {
         match self {
-            Loads::Words => Capabilities::empty(),
-            Loads::Pairs => Capabilities::SHADER_INT64,
+            MemoryAccess::Words => Capabilities::empty(),
+            MemoryAccess::Pairs => Capabilities::SHADER_INT64,
         }
     }
 }
@@ -118,15 +121,15 @@ impl Program {
         Program::link_with(parts, Capabilities::empty())
     }
 
-    /// The renderer's own program and further parts, for a device that [`Device::loads`] says this of.
+    /// The renderer's own program and further parts, for a device that [`Device::memory_access`] says this of.
     ///
     /// # Errors
     /// [`Error::Shader`] as for [`Program::link`].
     ///
-    /// [`Device::loads`]: crate::gpu::Device::loads
-    pub fn renderer(loads: Loads, further: &[Part]) -> Result<Program> {
-        let parts: Vec<Part> = loads.parts().into_iter().chain(further.iter().copied()).collect();
-        Program::link_with(&parts, loads.capabilities())
+    /// [`Device::memory_access`]: crate::gpu::Device::memory_access
+    pub fn renderer(access: MemoryAccess, further: &[Part]) -> Result<Program> {
+        let parts: Vec<Part> = access.parts().into_iter().chain(further.iter().copied()).collect();
+        Program::link_with(&parts, access.capabilities())
     }
 
     fn link_with(parts: &[Part], capabilities: Capabilities) -> Result<Program> {

@@ -57,7 +57,7 @@ fn open_device() -> Device {
 }
 
 fn renderer(device: Device, kernel: &'static str, entry_point: &str, checked: bool) -> GpuRenderer {
-    let shared = ["types", "bindings", "loads/words", "blocks"];
+    let shared = ["types", "bindings", "memory/words/buffers", "blocks"];
     let shared = shared.map(|name| part(&format!("shaders/{name}.wgsl")).expect("a shared part"));
     let parts = [&shared[..], &[Part { path: "tests/gpu.wgsl", text: kernel }]].concat();
     let program = Program::link(&parts).unwrap_or_else(|error| panic!("{error}"));

@@ -9,7 +9,7 @@ use gpu_trace::gpu::{Device, DeviceSelector, GpuOptions, GpuRenderer};
 use gpu_trace::render::{RenderOptions, Unattended, render};
 use gpu_trace::scene::{LightExtent, Material, Scene, Shape};
 use gpu_trace::script::{ScriptOptions, load_scene};
-use gpu_trace::shader::{Loads, Program, RENDER_ENTRY_POINT};
+use gpu_trace::shader::{MemoryAccess, Program, RENDER_ENTRY_POINT};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -94,17 +94,17 @@ fn mixed_stage() -> Stage {
     stage
 }
 
-/// Software devices are given loads by pairs; what other devices are given has to do the same.
+/// Software devices are given access by pairs; what other devices are given has to do the same.
 #[test]
-fn loads_by_words_and_by_pairs_give_the_identical_film() {
+fn access_by_words_and_by_pairs_gives_the_identical_film() {
     for file in ["scenes/texture.lua", "scenes/waterfall.lua", "scenes/cylinder-torus.lua"] {
         let mut scene = reduced_scenes(Path::new(file)).swap_remove(0);
         scene.size = [64, 64 * scene.size[1] / scene.size[0]];
         let buffers = Arc::new(flatten(&scene).unwrap_or_else(|error| panic!("{error}")));
-        let [words, pairs] = [Loads::Words, Loads::Pairs].map(|loads| {
+        let [words, pairs] = [MemoryAccess::Words, MemoryAccess::Pairs].map(|access| {
             let device = Device::open(&DeviceSelector::Software).unwrap_or_else(|error| panic!("{error}"));
-            assert_eq!(device.loads(), Loads::Pairs);
-            let program = Program::renderer(loads, &[]).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(device.memory_access(), MemoryAccess::Pairs);
+            let program = Program::renderer(access, &[]).unwrap_or_else(|error| panic!("{error}"));
             let options = GpuOptions { checked: false };
             let mut renderer = GpuRenderer::with_program(device, options, program, RENDER_ENTRY_POINT);
             let options = RenderOptions::whole(&buffers);

@@ -4,7 +4,7 @@ use gpu_trace::Error;
 use gpu_trace::flatten::{FeatureSet, flatten};
 use gpu_trace::gpu::probe::LOOP_PROBE;
 use gpu_trace::script::{ScriptOptions, load_scene};
-use gpu_trace::shader::{Loads, PARTS, Part, Program, RENDER_ENTRY_POINT};
+use gpu_trace::shader::{MemoryAccess, PARTS, Part, Program, RENDER_ENTRY_POINT};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -45,7 +45,7 @@ fn files_under(folder: &Path, found: &mut BTreeSet<String>) {
 fn every_file_under_shaders_is_linked() {
     let mut on_disk = BTreeSet::new();
     files_under(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), &mut on_disk);
-    let parts = Loads::Pairs.parts();
+    let parts = MemoryAccess::Pairs.parts();
     let linked: BTreeSet<String> =
         PARTS.iter().chain(&parts).chain([&LOOP_PROBE]).map(|part| part.path.to_owned()).collect();
     assert_eq!(on_disk, linked);
@@ -53,8 +53,8 @@ fn every_file_under_shaders_is_linked() {
 
 #[test]
 fn the_program_validates_with_every_feature_alone_on_and_alone_off() {
-    for loads in [Loads::Words, Loads::Pairs] {
-        let program = Program::renderer(loads, &[]).unwrap();
+    for access in [MemoryAccess::Words, MemoryAccess::Pairs] {
+        let program = Program::renderer(access, &[]).unwrap();
         let names = override_names(&program);
         assert!(names.len() >= 12, "only {} overrides", names.len());
         let validate = |value: &dyn Fn(usize) -> bool| {
@@ -72,9 +72,9 @@ fn the_program_validates_with_every_feature_alone_on_and_alone_off() {
 
 /// Devices without integers of 64 bits can run what they are given.
 #[test]
-fn only_loads_by_pairs_need_more_than_core_webgpu() {
-    Program::link(&Loads::Words.parts()).unwrap();
-    let message = shader_error(&Loads::Pairs.parts());
+fn only_access_by_pairs_needs_more_than_core_webgpu() {
+    Program::link(&MemoryAccess::Words.parts()).unwrap();
+    let message = shader_error(&MemoryAccess::Pairs.parts());
     assert!(message.contains("SHADER_INT64"), "{message}");
 }
 
@@ -83,7 +83,7 @@ fn the_program_does_not_depend_on_the_order_of_its_parts() {
     let mut parts = PARTS.to_vec();
     parts.reverse();
     let reversed = Program::link(&parts).unwrap();
-    let program = Program::renderer(Loads::Words, &[]).unwrap();
+    let program = Program::renderer(MemoryAccess::Words, &[]).unwrap();
     assert_eq!(reversed.module().functions.len(), program.module().functions.len());
     assert_eq!(reversed.module().entry_points.len(), program.module().entry_points.len());
     reversed.validate_permutation(RENDER_ENTRY_POINT, &[]).unwrap();
@@ -156,7 +156,7 @@ override DIVIDED: u32 = 1u / select(0u, 1u, HAS_A);
 
 #[test]
 fn every_override_is_a_feature() {
-    let program = Program::renderer(Loads::Words, &[]).unwrap();
+    let program = Program::renderer(MemoryAccess::Words, &[]).unwrap();
     let declared: BTreeSet<String> = override_names(&program).into_iter().collect();
     let set: BTreeSet<String> = FeatureSet::ALL_ON.overrides().into_iter().map(|(name, _)| name.to_owned()).collect();
     assert_eq!(declared, set);
@@ -167,7 +167,7 @@ fn every_override_is_a_feature() {
 /// The permutations that users meet first.
 #[test]
 fn the_program_validates_with_the_features_of_every_scene() {
-    let program = Program::renderer(Loads::Words, &[]).unwrap();
+    let program = Program::renderer(MemoryAccess::Words, &[]).unwrap();
     let mut permutations = BTreeSet::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     for entry in std::fs::read_dir(folder).unwrap() {

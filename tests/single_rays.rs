@@ -22,6 +22,7 @@ const KERNEL: &str = "
 fn trace(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let index = group.x * 64u + lane;
     if (group.x >= dispatch.block_count || index >= frame.image_size.x * frame.image_size.y) { return; }
+    claim_stack(lane);
     let key = hash_combine(frame.seed, index);
     let a = sobol_2d(0u, hash_combine(key, 1u));
     let b = sobol_2d(0u, hash_combine(key, 2u));

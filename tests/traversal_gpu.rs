@@ -23,6 +23,7 @@ fn trace_rays(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
     let origin = vec3<f32>(ray_word(index, 0u), ray_word(index, 1u), ray_word(index, 2u));
     let direction = vec3<f32>(ray_word(index, 3u), ray_word(index, 4u), ray_word(index, 5u));
     let t_max = ray_word(index, 6u);
+    claim_stack(lane);
     tally = Tally(0u, vec4<u32>(0u));
     let occluded = select(0u, 1u, scene_occluded(origin, direction, t_max));
     let hit = scene_intersect(origin, direction, t_max);
@@ -56,7 +57,7 @@ struct Found {
 fn found_on_gpu(buffers: &SceneBuffers, rays: &[Ray], source: &str) -> Vec<Found> {
     let device = Device::open(&DeviceSelector::Any).unwrap_or_else(|error| panic!("{error}"));
     let kernel = Part { path: "tests/traversal.wgsl", text: source };
-    let program = Program::renderer(device.loads(), &[kernel]).unwrap_or_else(|error| panic!("{error}"));
+    let program = Program::renderer(device.memory_access(), &[kernel]).unwrap_or_else(|error| panic!("{error}"));
     let options = GpuOptions { checked: false };
     let mut renderer = GpuRenderer::with_program(device, options, program, "trace_rays");
 

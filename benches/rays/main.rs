@@ -117,7 +117,7 @@ impl Gpu {
     fn new(buffers: Arc<SceneBuffers>) -> Result<Self> {
         let walk = Part { path: "benches/rays/rays.wgsl", text: include_str!("rays.wgsl") };
         let device = Device::open(&DeviceSelector::Any)?;
-        let program = Program::renderer(device.loads(), &[walk])?;
+        let program = Program::renderer(device.memory_access(), &[walk])?;
         let name = format!("{} ({})", device.description().name, device.description().driver);
         let mut renderer = GpuRenderer::with_program(device, GpuOptions { checked: false }, program, "walk");
         renderer.prepare(buffers.clone())?;

@@ -24,6 +24,7 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         return;
     }
     let pixel = block_at(place) * BLOCK_EDGE + pixel_in_block(lane);
+    claim_stack(lane);
     tally = Tally(0u, vec4<u32>(0u));
     random_state = pcg(pixel.x + pixel.y * frame.image_size.x);
 

@@ -60,7 +60,6 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     let count = select(frame.bounded_count, frame.mist_count, in_mist);
     if count == 0u { return hit; }
 
-    var stack: array<vec2<u32>, TRAVERSAL_STACK>;
     var height = 0u;
     // Inside a mesh: the height of the stack at which the ray is back among the instances.
     var return_height = NONE;
@@ -86,7 +85,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         let rest = select(group.y >> 4u, group.y & ~(1u << bit), is_mesh);
         // Written whether or not anything is left: what only some lanes do costs lavapipe a branch for each of them.
         let has_room = height < TRAVERSAL_STACK;
-        stack[min(height, TRAVERSAL_STACK - 1u)] = vec2<u32>(group.x, rest);
+        stack_set(min(height, TRAVERSAL_STACK - 1u), vec2<u32>(group.x, rest));
         height += select(0u, 1u, rest != 0u && has_room);
         tally.flags |= select(0u, STATUS_STACK_FULL, rest != 0u && !has_room);
 
@@ -143,13 +142,13 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             // The meshes first, then the node's inner children.
             let has_inner = group.y != 0u;
             let has_space = height < TRAVERSAL_STACK;
-            stack[min(height, TRAVERSAL_STACK - 1u)] = group;
+            stack_set(min(height, TRAVERSAL_STACK - 1u), group);
             height += select(0u, 1u, has_inner && has_space);
             tally.flags |= select(0u, STATUS_STACK_FULL, has_inner && !has_space);
             group = vec2<u32>(node.children.y, meshes * FIRST_MESH);
         }
         // Back among the instances, and the group that was put aside last: read whether or not it is needed, as above.
-        let top = stack[max(height, 1u) - 1u];
+        let top = stack_get(max(height, 1u) - 1u);
         let is_done = group.y == 0u;
         if is_done && height == 0u { break; }
         if HAS_MESH {

@@ -12,6 +12,7 @@ fn render(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_ind
     }
     let pixel = in_band + vec2<u32>(0u, dispatch.band_row);
 
+    claim_stack(lane);
     tally = Tally(0u, vec4<u32>(0u));
     tally.rays[RAY_CAMERA] = 1u;
     let camera = camera_ray(pixel, dispatch.sample_index);

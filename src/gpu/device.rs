@@ -1,6 +1,6 @@
 //! Finding a device and opening it, and turning what goes wrong on it into errors.
 
-use crate::shader::Loads;
+use crate::shader::MemoryAccess;
 use crate::{Error, Result};
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -156,7 +156,7 @@ pub struct Device {
     pub(super) queue: wgpu::Queue,
     description: Description,
     limits: DeviceLimits,
-    loads: Loads,
+    memory_access: MemoryAccess,
     faults: Arc<Mutex<Faults>>,
 }
 
@@ -206,9 +206,9 @@ impl Device {
         &self.limits
     }
 
-    /// How its kernels load nodes, instances and triangles; those that load by words work too.
-    pub fn loads(&self) -> Loads {
-        self.loads
+    /// How its kernels reach memory; those that do it by words work too.
+    pub fn memory_access(&self) -> MemoryAccess {
+        self.memory_access
     }
 
     /// Gives the device's memory back now; whatever is tried on it or its clones afterwards is an error.
@@ -269,15 +269,15 @@ fn open_adapter(description: &Description, adapter: &wgpu::Adapter, storage_bind
     if given < needed {
         return Err(Error::Device(format!("{name} gives a kernel {given} storage buffers; {needed} are needed")));
     }
-    let loads = match description.kind {
-        DeviceKind::Software if adapter.features().contains(features_for(Loads::Pairs)) => Loads::Pairs,
+    let memory_access = match description.kind {
+        DeviceKind::Software if adapter.features().contains(features_for(MemoryAccess::Pairs)) => MemoryAccess::Pairs,
         // A GPU loads 16 bytes at once as it is.
-        _ => Loads::Words,
+        _ => MemoryAccess::Words,
     };
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("gpu-trace"),
         required_limits: limits,
-        required_features: features_for(loads),
+        required_features: features_for(memory_access),
         // A renderer makes few and large buffers.
         memory_hints: wgpu::MemoryHints::MemoryUsage,
         ..Default::default()
@@ -302,13 +302,13 @@ fn open_adapter(description: &Description, adapter: &wgpu::Adapter, storage_bind
         });
     });
     let limits = device.limits().into();
-    Ok(Device { device, queue, description: description.clone(), limits, loads, faults })
+    Ok(Device { device, queue, description: description.clone(), limits, memory_access, faults })
 }
 
-fn features_for(loads: Loads) -> wgpu::Features {
-    match loads {
-        Loads::Words => wgpu::Features::empty(),
-        Loads::Pairs => wgpu::Features::SHADER_INT64,
+fn features_for(access: MemoryAccess) -> wgpu::Features {
+    match access {
+        MemoryAccess::Words => wgpu::Features::empty(),
+        MemoryAccess::Pairs => wgpu::Features::SHADER_INT64,
     }
 }
 

@@ -82,7 +82,7 @@ pub(super) fn compile(
         entry_point: Some(entry_point),
         compilation_options: wgpu::PipelineCompilationOptions {
             constants,
-            // The kernels use no workgroup memory, and zeroing it costs lavapipe a minute of compiling.
+            // The kernels write workgroup memory before they read it, and zeroing costs lavapipe a minute of compiling.
             zero_initialize_workgroup_memory: false,
         },
         cache: None,

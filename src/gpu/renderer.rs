@@ -41,12 +41,13 @@ impl GpuRenderer {
     /// # Errors
     /// [`Error::Shader`] where the shaders are not valid.
     pub fn new(device: Device, options: GpuOptions) -> Result<Self> {
-        let program = Program::renderer(device.loads(), &[])?;
+        let program = Program::renderer(device.memory_access(), &[])?;
         Ok(GpuRenderer::with_program(device, options, program, RENDER_ENTRY_POINT))
     }
 
     /// A renderer with another kernel, which has to use the bindings of `shaders/bindings.wgsl` and workgroups of 64
-    /// in one dimension, and to do nothing where `workgroup_id.x >= dispatch.block_count`.
+    /// in one dimension, to do nothing where `workgroup_id.x >= dispatch.block_count`, and to call `claim_stack` before
+    /// it traces rays.
     pub fn with_program(device: Device, options: GpuOptions, program: Program, entry_point: &str) -> Self {
         let entry_point = entry_point.to_owned();
         GpuRenderer {

@@ -1,5 +1,5 @@
-// The buffers that rays read most, word by word, as types.wgsl declares them. loads/pairs.wgsl has the same functions;
-// `Loads` in src/shader.rs says which of the two a device is given.
+// The buffers that rays read most, word by word, as types.wgsl declares them. The files in memory/pairs have the same
+// functions as those in memory/words; `MemoryAccess` in src/shader.rs says which of the two a device is given.
 @group(0) @binding(2) var<storage, read> nodes: array<Node>;
 @group(0) @binding(3) var<storage, read> instances: array<Instance>;
 @group(0) @binding(4) var<storage, read> triangles: array<Triangle>;

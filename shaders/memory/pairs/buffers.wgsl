@@ -1,5 +1,5 @@
-// The buffers of loads/words.wgsl, two words at a time as integers of 64 bits. Lavapipe loads lane by lane and checks
-// each load, whatever its width, so that half as many are faster; what a load brings that is not used is left out.
+// The buffers of memory/words/buffers.wgsl, two words at a time as integers of 64 bits. Lavapipe loads lane by lane and
+// checks each load, whatever its width, so that half as many are faster; what a load brings that is not used is left out.
 @group(0) @binding(2) var<storage, read> nodes: array<array<vec2<u64>, 5>>;
 @group(0) @binding(3) var<storage, read> instances: array<array<vec2<u64>, 8>>;
 @group(0) @binding(4) var<storage, read> triangles: array<array<vec2<u64>, 4>>;
