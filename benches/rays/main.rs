@@ -31,6 +31,8 @@ type Result<T, E = Box<dyn std::error::Error>> = std::result::Result<T, E>;
 const EDGE: u32 = 512;
 const SAMPLES: u32 = 4;
 const BOUNCES: u32 = 3;
+/// As in rays.wgsl: blocks of a workgroup.
+const BLOCKS: u32 = 4;
 /// Parts that the picture is submitted in, so that none is long.
 const SUBMITS: u32 = 4;
 
@@ -127,7 +129,7 @@ impl Gpu {
 
     fn trace(&mut self) -> Result<Traced> {
         let order = BlockOrder::new(EDGE, EDGE);
-        let block_count = order.places() / SUBMITS;
+        let block_count = order.places() / BLOCKS / SUBMITS;
         let start = Instant::now();
         let mut rays = 0;
         for part in 0..SUBMITS {

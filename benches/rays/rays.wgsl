@@ -3,6 +3,9 @@
 
 const SAMPLES: u32 = 4u;
 const BOUNCES: u32 = 3u;
+// Blocks that one workgroup walks, so that a lane has the paths of this many pixels: the more paths, the less they differ
+// in their sum of rays, and lanes wait for the longest sum.
+const BLOCKS: u32 = 4u;
 
 fn pcg(value: u32) -> u32 {
     let state = value * 747796405u + 2891336453u;
@@ -23,18 +26,21 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if (place >= dispatch.first_block + dispatch.block_count) {
         return;
     }
-    let pixel = block_at(place) * BLOCK_EDGE + pixel_in_block(lane);
     claim_stack(lane);
     tally = Tally(0u, vec4<u32>(0u));
-    random_state = pcg(pixel.x + pixel.y * frame.image_size.x);
 
+    var pixel: vec2<u32>;
     var origin: vec3<f32>;
     var direction: vec3<f32>;
-    var sample = 0u;
+    var path = 0u;
     var bounce = 0u;
     // Each turn traces one ray, so that lanes whose path has ended go on with the next.
-    while (sample < SAMPLES) {
+    while (path < BLOCKS * SAMPLES) {
         if (bounce == 0u) {
+            if (path % SAMPLES == 0u) {
+                pixel = block_at(place * BLOCKS + path / SAMPLES) * BLOCK_EDGE + pixel_in_block(lane);
+                random_state = pcg(pixel.x + pixel.y * frame.image_size.x);
+            }
             let x = (f32(pixel.x) + uniform_number()) / f32(frame.image_size.x) * 2.0 - 1.0;
             let y = 1.0 - (f32(pixel.y) + uniform_number()) / f32(frame.image_size.y) * 2.0;
             origin = vec3<f32>(0.0, 1.2, 3.2);
@@ -43,7 +49,7 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         tally.rays[0] += 1u;
         let hit = traverse(origin, direction, T_INFINITY, false, INSTANCE_SEEN);
         if (hit.t < 0.0) {
-            sample++;
+            path++;
             bounce = 0u;
             continue;
         }
@@ -57,7 +63,7 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         direction = normalize(normal + 0.999 * vec3<f32>(sine * cos(phi), sine * sin(phi), z));
         bounce++;
         if (bounce > BOUNCES) {
-            sample++;
+            path++;
             bounce = 0u;
         }
     }
