@@ -1,4 +1,5 @@
-//! Compressed wide hierarchies in the kernel's layout: binary trees, collapsed by obvhs.
+//! Compressed wide hierarchies in the kernel's layout: binary trees, collapsed by obvhs, whose nodes' children are then
+//! put in the order of their kinds.
 
 use super::binned;
 use crate::layout::Node;
