@@ -92,6 +92,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         var child = group.x + (group.y & 7u);
         var limit = nearest;
         if is_mesh {
+            // FIRST_MESH is bit 4.
             instance = group.x + bit - 4u;
             child = root_of(instance);
             let object_from_world = object_from_world_of(instance);
@@ -101,12 +102,14 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             inverse = inverse_direction(object_direction);
             return_height = height;
             if HAS_SHADOWLESS && (flags_of(instance) & mask) == 0u {
+                // Nothing of it is met.
                 limit = MISS;
             }
         }
         let node = node_at(child);
         let met = node_intersect(node, ray_origin, inverse, limit);
         group = vec2<u32>(node.children.x, met.children);
+        // Instances of meshes come first among a node's primitives.
         let meshes = met.primitives & ((1u << (node.grid.w >> 28u)) - 1u);
         var primitives_left = met.primitives ^ meshes;
         while primitives_left != 0u {

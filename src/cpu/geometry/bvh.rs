@@ -122,6 +122,7 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
         }
         let mut limit = nearest;
         let child = if is_mesh {
+            // FIRST_MESH is bit 4.
             let index = group.x + bit - 4;
             let instance = &scene.instances[index as usize];
             let object_direction = transform_vector(&instance.object_from_world, direction);
@@ -129,6 +130,7 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             inverse = inverse_direction(object_direction);
             mesh = Some((index, triangle_ray(ray_origin, object_direction), stack.height));
             if instance.flags & MASK == 0 {
+                // Nothing of it is met.
                 limit = MISS;
             }
             instance.root
@@ -138,6 +140,7 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
         let node = &scene.nodes[child as usize];
         let met = node_intersect(node, ray_origin, inverse, limit);
         group = UVec2::new(node.children.x, met.children);
+        // Instances of meshes come first among a node's primitives.
         let meshes = met.primitives & ((1 << (node.grid.w >> 28)) - 1);
         let mut primitives_left = met.primitives ^ meshes;
         while primitives_left != 0 {
