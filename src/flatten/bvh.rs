@@ -62,9 +62,7 @@ fn children_by_kind(mut node: CwBvhNode, order: &mut [u32], is_mesh: &impl Fn(u3
         first..first + (meta >> 5).count_ones() as usize
     };
     let is_inner = |child: usize| node.imask >> child & 1 == 1;
-    let leads_to_mesh = |child: usize| {
-        order.get(primitives(node.child_meta[child])).is_some_and(|leaf| leaf.iter().any(|&i| is_mesh(i)))
-    };
+    let leads_to_mesh = |child: usize| order[primitives(node.child_meta[child])].iter().any(|&i| is_mesh(i));
     let kind = |&child: &usize| match child {
         child if is_inner(child) => 0,
         child if leads_to_mesh(child) => 1,

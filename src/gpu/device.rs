@@ -206,9 +206,14 @@ impl Device {
         &self.limits
     }
 
-    /// How its kernels reach memory; those that do it by words work too.
+    /// How its kernels reach memory fastest.
     pub fn memory_access(&self) -> MemoryAccess {
         self.memory_access
+    }
+
+    /// Whether kernels that reach memory in this way run on it.
+    pub fn supports(&self, access: MemoryAccess) -> bool {
+        self.device.features().contains(features_for(access))
     }
 
     /// Gives the device's memory back now; whatever is tried on it or its clones afterwards is an error.
@@ -269,15 +274,16 @@ fn open_adapter(description: &Description, adapter: &wgpu::Adapter, storage_bind
     if given < needed {
         return Err(Error::Device(format!("{name} gives a kernel {given} storage buffers; {needed} are needed")));
     }
+    let features = adapter.features() & features_for(MemoryAccess::Pairs);
     let memory_access = match description.kind {
-        DeviceKind::Software if adapter.features().contains(features_for(MemoryAccess::Pairs)) => MemoryAccess::Pairs,
+        DeviceKind::Software if features == features_for(MemoryAccess::Pairs) => MemoryAccess::Pairs,
         // A GPU loads 16 bytes at once as it is.
         _ => MemoryAccess::Words,
     };
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("gpu-trace"),
         required_limits: limits,
-        required_features: features_for(memory_access),
+        required_features: features,
         // A renderer makes few and large buffers.
         memory_hints: wgpu::MemoryHints::MemoryUsage,
         ..Default::default()
