@@ -9,7 +9,9 @@ use gpu_trace::cpu::geometry::instance::{instance_intersect, transform_point, tr
 use gpu_trace::cpu::geometry::plane::plane_intersect;
 use gpu_trace::cpu::geometry::triangle::{triangle_intersect, triangle_ray};
 use gpu_trace::flatten::SceneBuffers;
-use gpu_trace::layout::{Instance, Node, SHAPE_MESH, SHAPE_PLANE, STATUS_LOOP_BOUND, STATUS_STACK_FULL};
+use gpu_trace::layout::{
+    INSTANCE_SHADES, Instance, Node, SHAPE_MESH, SHAPE_PLANE, STATUS_LOOP_BOUND, STATUS_STACK_FULL,
+};
 use gpu_trace::renderer::Tally;
 use gpu_trace::scene::{Mesh, Node as SceneNode, Shape};
 use std::collections::{BTreeMap, BTreeSet};
@@ -309,6 +311,24 @@ fn loop_and_stack_bounds_are_reported() {
     let mut tally = Tally::default();
     let hit = scene_intersect(&bindings(&buffers), ray.origin, ray.direction, ray.t_max, &mut tally);
     assert_eq!((hit.t, tally.flags), (MISS, STATUS_LOOP_BOUND | STATUS_STACK_FULL));
+}
+
+/// One mesh alone is entered without a hierarchy over it, several by one.
+#[test]
+fn meshes_that_cast_no_shadow_are_seen_and_occlude_nothing() {
+    let quad = Arc::new(quad());
+    for count in [1, 2, 20] {
+        let place = |i| DAffine3::from_translation(DVec3::new(0.0, -f64::from(i), 0.0));
+        let mut buffers = flattened(&scene_of((0..count).map(|i| (Shape::Mesh(quad.clone()), place(i)))));
+        let met = |buffers: &SceneBuffers| {
+            let (scene, origin, mut tally) = (bindings(buffers), Vec3::new(0.3, 1.0, 0.6), Tally::default());
+            let seen = scene_intersect(&scene, origin, Vec3::NEG_Y, 100.0, &mut tally).t > 0.0;
+            (seen, scene_occluded(&scene, origin, Vec3::NEG_Y, 100.0, &mut tally))
+        };
+        assert_eq!(met(&buffers), (true, true), "{count} meshes");
+        buffers.instances.iter_mut().for_each(|instance| instance.flags &= !INSTANCE_SHADES);
+        assert_eq!(met(&buffers), (true, false), "{count} meshes without shadow");
+    }
 }
 
 /// An instance's box is put together of many; each end of a turned row of triangles has to be in it.
