@@ -76,8 +76,9 @@ struct Dispatch {
     canary_turns: u32,
 };
 
-// One node of the compressed wide hierarchy, eight children in 80 bytes (Ylitie, Karras, Laine 2017, section 3). Inner
-// children come first, then instances of meshes, then all other leaves: src/flatten/bvh.rs puts them so.
+// One node of the compressed wide hierarchy, eight children in 80 bytes (Ylitie, Karras, Laine 2017, section 3) and 16
+// more, so that nodes begin at multiples of 32 bytes, which memory/pairs loads at once. Inner children come first, then
+// instances of meshes, then all other leaves: src/flatten/bvh.rs puts them so.
 struct Node {
     // Minimum corner of the quantisation grid (bits of f32); three exponent bytes (x lowest), then the number
     // of inner children in the low half of a byte and that of children that are instances of meshes in the high half.
@@ -90,6 +91,7 @@ struct Node {
     x: vec4<u32>,
     y: vec4<u32>,
     z: vec4<u32>,
+    unused: vec4<u32>,
 };
 
 // A shape placed in the world. Affine maps are three rows of (linear part, translation).

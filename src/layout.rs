@@ -67,6 +67,7 @@ pub struct Node {
     pub x: UVec4,
     pub y: UVec4,
     pub z: UVec4,
+    pub unused: UVec4,
 }
 
 /// Three rows of an affine map: (linear part, translation); `mat3x4<f32>` in WGSL.

@@ -96,7 +96,7 @@ fn rust_structs() -> Vec<Struct> {
             portions,
             canary_turns,
         }),
-        rust_struct!(Node { grid, children, x, y, z }),
+        rust_struct!(Node { grid, children, x, y, z, unused }),
         rust_struct!(Instance { object_from_world, shape, material, root, flags, world_from_object, parameters }),
         rust_struct!(Triangle { p0, n0, p1, n1, p2, n2, uv0, uv1, uv2, flags }),
         rust_struct!(Material {

@@ -119,7 +119,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             if HAS_MESH && (!HAS_ANALYTIC || return_height != NONE) {
                 let triangle = triangle_at(index);
                 let met = triangle_intersect(triangle_space, triangle.p0, triangle.p1, triangle.p2, nearest);
-                if met.t > 0.0 {
+                if met.is_hit {
                     hit = Hit(met.t, instance, index, met.b1, met.b2);
                     nearest = met.t;
                     if any_hit { return hit; }

@@ -9,8 +9,9 @@ struct TriangleRay {
     shear: vec3<f32>,
 };
 
-// b1 and b2 weigh p1 and p2; t is MISS where there is no hit.
+// b1 and b2 weigh p1 and p2; t is MISS where there is no hit, which is_hit says without a detour over t.
 struct TriangleHit {
+    is_hit: bool,
     t: f32,
     b1: f32,
     b2: f32,
@@ -45,12 +46,18 @@ fn triangle_intersect(ray: TriangleRay, p0: vec3<f32>, p1: vec3<f32>, p2: vec3<f
     let u = cx * by - cy * bx;
     let v = ax * cy - ay * cx;
     let w = bx * ay - by * ax;
-    let inside = min(min(u, v), w) >= 0.0 || max(max(u, v), w) <= 0.0;
+    let inside = none_positive(u, v, w) || none_positive(-u, -v, -w);
     let determinant = u + v + w;
     let inverse = 1.0 / select(determinant, 1.0, determinant == 0.0);
     let t = (u * a.z + v * b.z + w * c.z) * ray.shear.z * inverse;
     let hit = inside && determinant != 0.0 && t > 0.0 && t < t_max;
-    return TriangleHit(select(MISS, t, hit), v * inverse, w * inverse);
+    return TriangleHit(hit, select(MISS, t, hit), v * inverse, w * inverse);
+}
+
+// Of numbers, not NaN. As integers: those of positive floats are positive, that of -0 isn't, and a maximum is one
+// instruction, where one of floats takes care of NaN.
+fn none_positive(u: f32, v: f32, w: f32) -> bool {
+    return max(max(bitcast<i32>(u), bitcast<i32>(v)), bitcast<i32>(w)) <= 0;
 }
 
 // A unit vector from its octahedral packing (Cigolle et al., JCGT 2014): two 16-bit snorms, x in the low half.

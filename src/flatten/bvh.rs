@@ -98,7 +98,8 @@ fn children_by_kind(mut node: CwBvhNode, order: &mut [u32], is_mesh: &impl Fn(u3
     }
     order[base..base + members.len()].copy_from_slice(&members);
     node.imask = inner_count | mesh_count << 4;
-    bytemuck::cast(node)
+    let [grid, children, x, y, z] = bytemuck::cast(node);
+    Node { grid, children, x, y, z, unused: UVec4::ZERO }
 }
 
 /// Appends a hierarchy whose primitives begin at `first_primitive` of their buffer.

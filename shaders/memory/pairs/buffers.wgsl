@@ -1,8 +1,9 @@
-// The buffers of memory/words/buffers.wgsl, two words at a time as integers of 64 bits. Lavapipe loads lane by lane and
-// checks each load, whatever its width, so that half as many are faster; what a load brings that is not used is left out.
-@group(0) @binding(2) var<storage, read> nodes: array<array<vec2<u64>, 5>>;
-@group(0) @binding(3) var<storage, read> instances: array<array<vec2<u64>, 8>>;
-@group(0) @binding(4) var<storage, read> triangles: array<array<vec2<u64>, 4>>;
+// The buffers of memory/words/buffers.wgsl as integers of 64 bits. Lavapipe loads lane by lane: each load waits for a
+// test of the lane, and each component for one against the buffer's end. Fewest of both have vectors of four integers;
+// components that are not used are left out.
+@group(0) @binding(2) var<storage, read> nodes: array<array<vec4<u64>, 3>>;
+@group(0) @binding(3) var<storage, read> instances: array<array<vec4<u64>, 4>>;
+@group(0) @binding(4) var<storage, read> triangles: array<array<vec4<u64>, 2>>;
 
 // Four words, the lower half of a pair first, as the buffers are little-endian.
 fn words_of(pairs: vec2<u64>) -> vec4<u32> {
@@ -11,40 +12,42 @@ fn words_of(pairs: vec2<u64>) -> vec4<u32> {
 fn numbers_of(pairs: vec2<u64>) -> vec4<f32> { return bitcast<vec4<f32>>(words_of(pairs)); }
 
 fn node_at(index: u32) -> Node {
+    let first = nodes[index][0];
+    let second = nodes[index][1];
+    let third = nodes[index][2];
     return Node(
-        words_of(nodes[index][0]),
-        words_of(nodes[index][1]),
-        words_of(nodes[index][2]),
-        words_of(nodes[index][3]),
-        words_of(nodes[index][4]),
+        words_of(first.xy),
+        words_of(first.zw),
+        words_of(second.xy),
+        words_of(second.zw),
+        words_of(third.xy),
+        vec4<u32>(0u),
     );
 }
 
 fn object_from_world_of(instance: u32) -> mat3x4<f32> {
-    return mat3x4<f32>(
-        numbers_of(instances[instance][0]),
-        numbers_of(instances[instance][1]),
-        numbers_of(instances[instance][2]),
-    );
+    let first = instances[instance][0];
+    let second = instances[instance][1];
+    return mat3x4<f32>(numbers_of(first.xy), numbers_of(first.zw), numbers_of(second.xy));
 }
-fn shape_of(instance: u32) -> u32 { return words_of(instances[instance][3]).x; }
-fn material_of(instance: u32) -> u32 { return words_of(instances[instance][3]).y; }
-fn root_of(instance: u32) -> u32 { return words_of(instances[instance][3]).z; }
-fn flags_of(instance: u32) -> u32 { return words_of(instances[instance][3]).w; }
+fn shape_of(instance: u32) -> u32 { return u32(instances[instance][1].z); }
+fn material_of(instance: u32) -> u32 { return u32(instances[instance][1].z >> 32u); }
+fn root_of(instance: u32) -> u32 { return u32(instances[instance][1].w); }
+fn flags_of(instance: u32) -> u32 { return u32(instances[instance][1].w >> 32u); }
 fn world_from_object_of(instance: u32) -> mat3x4<f32> {
-    return mat3x4<f32>(
-        numbers_of(instances[instance][4]),
-        numbers_of(instances[instance][5]),
-        numbers_of(instances[instance][6]),
-    );
+    let third = instances[instance][2];
+    let fourth = instances[instance][3];
+    return mat3x4<f32>(numbers_of(third.xy), numbers_of(third.zw), numbers_of(fourth.xy));
 }
-fn parameters_of(instance: u32) -> vec4<f32> { return numbers_of(instances[instance][7]); }
+fn parameters_of(instance: u32) -> vec4<f32> { return numbers_of(instances[instance][3].zw); }
 
 fn triangle_at(index: u32) -> Triangle {
-    let corner0 = words_of(triangles[index][0]);
-    let corner1 = words_of(triangles[index][1]);
-    let corner2 = words_of(triangles[index][2]);
-    let rest = words_of(triangles[index][3]);
+    let low = triangles[index][0];
+    let high = triangles[index][1];
+    let corner0 = words_of(low.xy);
+    let corner1 = words_of(low.zw);
+    let corner2 = words_of(high.xy);
+    let rest = words_of(high.zw);
     return Triangle(
         bitcast<vec3<f32>>(corner0.xyz), corner0.w,
         bitcast<vec3<f32>>(corner1.xyz), corner1.w,

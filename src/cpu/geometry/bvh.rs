@@ -150,7 +150,7 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             if let Some((instance, triangle_space, _)) = &mesh {
                 let triangle = &scene.triangles[index as usize];
                 let met = triangle_intersect(triangle_space, triangle.p0, triangle.p1, triangle.p2, nearest);
-                if met.t > 0.0 {
+                if met.is_hit {
                     hit = Hit { t: met.t, instance: *instance, primitive: index, b1: met.b1, b2: met.b2 };
                     nearest = met.t;
                     if ANY_HIT {

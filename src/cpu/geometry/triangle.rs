@@ -14,9 +14,10 @@ pub struct TriangleRay {
     pub shear: Vec3,
 }
 
-/// b1 and b2 weigh p1 and p2; t is [`MISS`] where there is no hit.
+/// b1 and b2 weigh p1 and p2; t is [`MISS`] where there is no hit, which `is_hit` says without a detour over t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
+    pub is_hit: bool,
     pub t: f32,
     pub b1: f32,
     pub b2: f32,
@@ -62,12 +63,19 @@ pub fn triangle_intersect(ray: &TriangleRay, p0: Vec3, p1: Vec3, p2: Vec3, t_max
     let u = cx * by - cy * bx;
     let v = ax * cy - ay * cx;
     let w = bx * ay - by * ax;
-    let inside = u.min(v).min(w) >= 0.0 || u.max(v).max(w) <= 0.0;
+    let inside = none_positive(u, v, w) || none_positive(-u, -v, -w);
     let determinant = u + v + w;
     let inverse = 1.0 / if determinant == 0.0 { 1.0 } else { determinant };
     let t = (u * a.z + v * b.z + w * c.z) * ray.shear.z * inverse;
     let hit = inside && determinant != 0.0 && t > 0.0 && t < t_max;
-    TriangleHit { t: if hit { t } else { MISS }, b1: v * inverse, b2: w * inverse }
+    TriangleHit { is_hit: hit, t: if hit { t } else { MISS }, b1: v * inverse, b2: w * inverse }
+}
+
+/// Of numbers, not NaN.
+#[inline]
+fn none_positive(u: f32, v: f32, w: f32) -> bool {
+    let [u, v, w] = [u, v, w].map(|number| number.to_bits() as i32);
+    u.max(v).max(w) <= 0
 }
 
 /// A unit vector from its octahedral packing (Cigolle et al., JCGT 2014): two 16-bit snorms, x in the low half.
