@@ -34,7 +34,9 @@ fn exp2_poly(x: f32) -> f32 {
     series = series * t + 0.5;
     series = series * t + 1.0;
     series = series * t + 1.0;
-    let scale = bitcast<f32>(u32(i32(whole) + 127) << 23u);
+    // The lowest bits of floats from 2^23 on count ones: the biased exponent, without a conversion, which lavapipe
+    // makes lane by lane.
+    let scale = bitcast<f32>(bitcast<u32>(whole + (8388608.0 + 127.0)) << 23u);
     return select(series * scale, 0.0, x < -126.0);
 }
 

@@ -37,7 +37,7 @@ pub fn exp2_poly(x: f32) -> f32 {
     series = series * t + 0.5;
     series = series * t + 1.0;
     series = series * t + 1.0;
-    let scale = f32::from_bits(((whole as i32 + 127) as u32) << 23);
+    let scale = f32::from_bits((whole + (8_388_608.0 + 127.0)).to_bits() << 23);
     if x < -126.0 { 0.0 } else { series * scale }
 }
 
