@@ -60,6 +60,8 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     let count = select(frame.bounded_count, frame.mist_count, in_mist);
     if count == 0u { return hit; }
 
+    // The ray has met what any_hit asks for. Not by `return`, after which lavapipe would mask all that follows.
+    var is_over = false;
     var height = 0u;
     // Inside a mesh: the height of the stack at which the ray is back among the instances.
     var return_height = NONE;
@@ -112,7 +114,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         // Instances of meshes come first among a node's primitives.
         let meshes = met.primitives & ((1u << (node.grid.w >> 28u)) - 1u);
         var primitives_left = met.primitives ^ meshes;
-        while primitives_left != 0u {
+        while primitives_left != 0u && !is_over {
             let place = firstLeadingBit(primitives_left);
             primitives_left &= ~(1u << place);
             let index = node.children.y + place;
@@ -122,7 +124,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
                 if met.is_hit {
                     hit = Hit(met.t, instance, index, met.b1, met.b2);
                     nearest = met.t;
-                    if any_hit { return hit; }
+                    is_over = any_hit;
                 }
                 continue;
             }
@@ -137,7 +139,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             if met.t > 0.0 {
                 hit = Hit(met.t, index, met.face, 0.0, 0.0);
                 nearest = met.t;
-                if any_hit { return hit; }
+                is_over = any_hit;
             }
         }
 
@@ -153,7 +155,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         // Back among the instances, and the group that was put aside last: read whether or not it is needed, as above.
         let top = stack_get(max(height, 1u) - 1u);
         let is_done = group.y == 0u;
-        if is_done && height == 0u { break; }
+        if is_over || (is_done && height == 0u) { break; }
         if HAS_MESH {
             let leaves = is_done && height == return_height;
             return_height = select(return_height, NONE, leaves);

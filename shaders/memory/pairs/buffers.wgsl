@@ -32,8 +32,15 @@ fn object_from_world_of(instance: u32) -> mat3x4<f32> {
 }
 fn shape_of(instance: u32) -> u32 { return u32(instances[instance][1].z); }
 fn material_of(instance: u32) -> u32 { return u32(instances[instance][1].z >> 32u); }
-fn root_of(instance: u32) -> u32 { return u32(instances[instance][1].w); }
-fn flags_of(instance: u32) -> u32 { return u32(instances[instance][1].w >> 32u); }
+// Of whole vectors, as they are read beside the map: a load of one component would be another load.
+fn root_of(instance: u32) -> u32 {
+    let second = instances[instance][1];
+    return u32(second.w);
+}
+fn flags_of(instance: u32) -> u32 {
+    let second = instances[instance][1];
+    return u32(second.w >> 32u);
+}
 fn world_from_object_of(instance: u32) -> mat3x4<f32> {
     let third = instances[instance][2];
     let fourth = instances[instance][3];
