@@ -27,4 +27,5 @@ override HAS_TEXTURE: bool = true;
 override HAS_BUMP: bool = true;
 override HAS_MIST: bool = true;
 override HAS_SHADOWLESS: bool = true;
+override HAS_MANY_LIGHTS: bool = true;
 override HAS_BACKGROUND_IMAGE: bool = true;

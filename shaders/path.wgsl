@@ -179,6 +179,8 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
     ));
     var ray: Ray;
     var surface: Surface;
+    // Of the last surface but a mist's, which scatters without one; kept, as each of its shadow rays asks for it.
+    var material: Material;
     // The light samples that the surface still waits for.
     var samples = vec2<u32>(0u);
     var flight: Flight;
@@ -197,7 +199,7 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
         var direction: vec3<f32>;
         var t_max = T_INFINITY;
         if (lighting) {
-            light = light_sample(surface, materials[surface.material], -ray.direction, ray.index, ray.key, ray.depth, samples.x);
+            light = light_sample(surface, material, -ray.direction, ray.index, ray.key, ray.depth, samples.x);
             samples.x++;
             if (all(light.radiance == vec3<f32>(0.0))) {
                 continue;
@@ -287,7 +289,7 @@ fn path_radiance(camera: CameraRay, sample_index: u32) -> vec4<f32> {
             radiance += ray.weight * (frame.ambient * surface.diffuse);
             continue;
         }
-        let material = materials[surface.material];
+        material = materials[surface.material];
         let cone_width = ray.cone_width + ray.cone_spread * hit.t;
         if (HAS_TEXTURE || HAS_BUMP) {
             surface = surface_detail(hit, surface, direction, cone_width);

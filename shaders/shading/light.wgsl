@@ -1,5 +1,20 @@
 // Lights: where shadow rays aim, and what arrives.
 
+// The light of a number. A few are looked through, by all lanes in step: lavapipe loads at once what all lanes ask for,
+// and lane by lane what each chooses.
+fn light_at(index: u32) -> Light {
+    if (HAS_MANY_LIGHTS) {
+        return lights[index];
+    }
+    var light = lights[0];
+    for (var i = 1u; i < frame.light_count; i++) {
+        if (i == index) {
+            light = lights[i];
+        }
+    }
+    return light;
+}
+
 // A point on the light as seen from `point` (world space): the point itself, uniform over a parallelogram, or uniform in
 // the solid angle of a ball (a point within the ball sees its whole surface).
 fn sample_light(light: Light, point: vec3<f32>, xi: vec2<f32>) -> vec3<f32> {
@@ -79,7 +94,7 @@ fn light_sample(surface: Surface, material: Material, v: vec3<f32>, index: u32, 
         light_index = min(u32((f32(sample) + choice) * share), frame.light_count - 1u);
         weight = share;
     }
-    let light = lights[light_index];
+    let light = light_at(light_index);
     var xi = vec2<f32>(0.5);
     if (HAS_AREA_LIGHT) {
         xi = sobol_2d(split_index, hash_combine(key, DIMENSION_LIGHT + light_index));

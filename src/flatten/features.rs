@@ -3,6 +3,9 @@
 use super::SceneBuffers;
 use crate::layout;
 
+/// Up to so many lights are looked through for that of a number, see `light_at` in `shaders/shading/light.wgsl`.
+const FEW_LIGHTS: usize = 4;
+
 /// One field for each `override` constant of `shaders/bindings.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct FeatureSet {
@@ -33,6 +36,8 @@ pub struct FeatureSet {
     pub mist: bool,
     /// A surface that casts no shadow.
     pub shadowless: bool,
+    /// More lights than the few that are looked through.
+    pub many_lights: bool,
     /// A picture around the scene.
     pub background_image: bool,
 }
@@ -56,6 +61,7 @@ impl FeatureSet {
         bump: false,
         mist: false,
         shadowless: false,
+        many_lights: false,
         background_image: false,
     };
 
@@ -77,6 +83,7 @@ impl FeatureSet {
         bump: true,
         mist: true,
         shadowless: true,
+        many_lights: true,
         background_image: true,
     };
 
@@ -116,6 +123,7 @@ impl FeatureSet {
                 .instances
                 .iter()
                 .any(|instance| instance.flags & (layout::INSTANCE_SHADES | layout::INSTANCE_MIST) == 0),
+            many_lights: buffers.lights.len() > FEW_LIGHTS,
             background_image: buffers.frame.background_image != layout::NONE,
         }
     }
@@ -140,6 +148,7 @@ impl FeatureSet {
             ("HAS_BUMP", self.bump),
             ("HAS_MIST", self.mist),
             ("HAS_SHADOWLESS", self.shadowless),
+            ("HAS_MANY_LIGHTS", self.many_lights),
             ("HAS_BACKGROUND_IMAGE", self.background_image),
         ]
     }
