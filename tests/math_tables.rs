@@ -100,12 +100,15 @@ fn triangles_agree() {
     let body = "let ray = triangle_ray(vec3_at(0u), vec3_at(1u));
          let hit = triangle_intersect(ray, vec3_at(2u), vec3_at(3u), vec3_at(4u), f32_at(0u, 3u));
          let normal = triangle_geometric_normal(vec3_at(2u), vec3_at(3u), vec3_at(4u));
-         results[0] = float_lane(vec4<f32>(hit.t, hit.b1, hit.b2, 0.0));
+         results[0] = float_lane(vec4<f32>(hit.t, hit.b1, hit.b2, f32(hit.is_hit)));
          results[1] = float_lane(vec4<f32>(normal, 0.0));";
     let cpu = |row: &[Lane; 5]| {
         let [o, d, p0, p1, p2] = row.map(lane_vec3);
         let hit = triangle_intersect(&triangle_ray(o, d), p0, p1, p2, f32::from_bits(row[0][3]));
-        [floats([hit.t, hit.b1, hit.b2, 0.0]), vec3_lane(triangle_geometric_normal(p0, p1, p2), 0.0)]
+        [
+            floats([hit.t, hit.b1, hit.b2, f32::from(u8::from(hit.is_hit))]),
+            vec3_lane(triangle_geometric_normal(p0, p1, p2), 0.0),
+        ]
     };
     let twins = Twins::new(triangle_rows(), &FunctionTable::new(&TRIANGLE_PARTS, body), cpu);
     let hits = twins.cpu.iter().filter(|row| f32::from_bits(row[0][0]) > 0.0).count();

@@ -40,8 +40,10 @@ fn mist_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> Hit {
 fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, mask: u32) -> Hit {
     var hit = Hit(MISS, NONE, 0u, 0.0, 0.0);
     var nearest = t_max;
+    // The ray has met what any_hit asks for. No `return` within a loop: lavapipe would mask all that follows.
+    var is_over = false;
     if HAS_PLANE {
-        for (var i = 0u; i < frame.plane_count; i++) {
+        for (var i = 0u; i < frame.plane_count && !is_over; i++) {
             if (HAS_MIST || HAS_SHADOWLESS) && (flags_of(i) & mask) == 0u {
                 continue;
             }
@@ -51,17 +53,15 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             if plane.t > 0.0 {
                 hit = Hit(plane.t, i, plane.face, 0.0, 0.0);
                 nearest = plane.t;
-                if any_hit { return hit; }
+                is_over = any_hit;
             }
         }
     }
     // Mists have a hierarchy of their own.
     let in_mist = HAS_MIST && mask == INSTANCE_MIST;
     let count = select(frame.bounded_count, frame.mist_count, in_mist);
-    if count == 0u { return hit; }
+    if count == 0u || is_over { return hit; }
 
-    // The ray has met what any_hit asks for. Not by `return`, after which lavapipe would mask all that follows.
-    var is_over = false;
     var height = 0u;
     // Inside a mesh: the height of the stack at which the ray is back among the instances.
     var return_height = NONE;

@@ -1,17 +1,15 @@
 // Lights: where shadow rays aim, and what arrives.
 
-// The light of a number. A few are looked through, by all lanes in step: lavapipe loads at once what all lanes ask for,
-// and lane by lane what each chooses.
+// The light of a number. Few (FEW_LIGHTS in src/flatten/features.rs) are told apart by constants: lavapipe loads at once
+// what all lanes surely share, which the turns of a loop aren't, and lane by lane what each may choose.
 fn light_at(index: u32) -> Light {
     if (HAS_MANY_LIGHTS) {
         return lights[index];
     }
     var light = lights[0];
-    for (var i = 1u; i < frame.light_count; i++) {
-        if (i == index) {
-            light = lights[i];
-        }
-    }
+    if (index == 1u) { light = lights[1]; }
+    if (index == 2u) { light = lights[2]; }
+    if (index == 3u) { light = lights[3]; }
     return light;
 }
 

@@ -3,7 +3,7 @@
 use super::SceneBuffers;
 use crate::layout;
 
-/// Up to so many lights are looked through for that of a number, see `light_at` in `shaders/shading/light.wgsl`.
+/// Up to so many lights are told apart by constants: as many as `light_at` in `shaders/shading/light.wgsl` lists.
 const FEW_LIGHTS: usize = 4;
 
 /// One field for each `override` constant of `shaders/bindings.wgsl`.
@@ -36,7 +36,7 @@ pub struct FeatureSet {
     pub mist: bool,
     /// A surface that casts no shadow.
     pub shadowless: bool,
-    /// More lights than the few that are looked through.
+    /// More lights than the few that are told apart by constants.
     pub many_lights: bool,
     /// A picture around the scene.
     pub background_image: bool,
