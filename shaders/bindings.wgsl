@@ -18,6 +18,8 @@ override HAS_PLANE: bool = true;
 override HAS_MESH: bool = true;
 // Any bounded shape but meshes.
 override HAS_ANALYTIC: bool = true;
+// Any bounded shape, mists included, beside one mesh: rays look for instances first.
+override HAS_INSTANCES: bool = true;
 override HAS_REFLECTION: bool = true;
 override HAS_REFRACTION: bool = true;
 override HAS_GLOSSY: bool = true;

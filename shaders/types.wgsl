@@ -57,10 +57,11 @@ struct Frame {
     pad1: u32,
 };
 
-// What one dispatch renders: one pass of one camera sample over some 8 x 8 pixel blocks of one band.
+// What one dispatch renders: one pass of some camera samples over some 8 x 8 pixel blocks of one band.
 struct Dispatch {
-    // Camera sample and pass of this dispatch.
+    // The first camera sample and their number, and the pass.
     sample_index: u32,
+    sample_count: u32,
     pass_index: u32,
     // The band of rows that the film buffer holds: first row and number of rows, pixels.
     band_row: u32,

@@ -48,6 +48,7 @@ pub struct Frame {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct Dispatch {
     pub sample_index: u32,
+    pub sample_count: u32,
     pub pass_index: u32,
     pub band_row: u32,
     pub band_rows: u32,

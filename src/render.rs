@@ -15,14 +15,16 @@ use std::time::{Duration, Instant};
 
 /// A submit should take about this long: GPU watchdogs stop longer ones, shorter ones waste time between them.
 const SUBMIT_TARGET: Duration = Duration::from_millis(75);
-/// The first submit, before anything is known of the scene's speed.
-const FIRST_RUN_BLOCKS: u64 = 32;
+/// Blocks of the first submit, before anything is known of the scene's speed.
+const FIRST_RUN: u64 = 32;
 /// A run grows at most by this factor from submit to submit.
 const GROWTH: f64 = 4.0;
 /// Dispatches in one submit.
 const MAX_DISPATCHES: usize = 256;
 /// Blocks in one dispatch: below WebGPU's limit of workgroups in a row, 65,535.
 const MAX_BLOCKS: u64 = 1 << 15;
+/// The most camera samples of a pixel in one dispatch: the more, the less is spent on reaching the film and the counters.
+const MAX_SAMPLES: u32 = 8;
 /// Turns of the loop that shows whether the driver cuts loops short.
 const CANARY_TURNS: u32 = 4;
 
@@ -33,6 +35,8 @@ pub struct RenderOptions {
     pub samples: Range<u32>,
     /// Fixes the blocks of a dispatch instead of sizing it by time; the picture is the same for any number.
     pub blocks_per_dispatch: Option<u32>,
+    /// Fixes the camera samples that a dispatch takes of each of its pixels, likewise.
+    pub samples_per_dispatch: Option<u32>,
     /// The most pixels to render at a time, where the device could hold more.
     pub max_band_pixels: Option<u64>,
     /// The work of a pass, in place of the planned one; it is divided all the same where a bound is met.
@@ -45,6 +49,7 @@ impl RenderOptions {
         RenderOptions {
             samples: 0..scene.sampling.camera,
             blocks_per_dispatch: None,
+            samples_per_dispatch: None,
             max_band_pixels: None,
             plan: None,
         }
@@ -127,7 +132,8 @@ pub fn render(
         frame,
         scene: &scene,
         plan: options.plan.unwrap_or_else(|| plan(&scene, 1)),
-        run_blocks: FIRST_RUN_BLOCKS as f64,
+        run: FIRST_RUN as f64,
+        most_samples: options.samples_per_dispatch.unwrap_or(MAX_SAMPLES).max(1),
         tally: Tally::default(),
         pixels_before: 0,
         pixels_total: u64::from(width) * u64::from(height),
@@ -178,8 +184,10 @@ struct Job<'a> {
     scene: &'a SceneBuffers,
     frame: Frame,
     plan: WorkPlan,
-    /// Blocks that the next submit takes.
-    run_blocks: f64,
+    /// What the next submit takes: blocks times the camera samples of each.
+    run: f64,
+    /// The most camera samples in one dispatch.
+    most_samples: u32,
     tally: Tally,
     pixels_before: u64,
     pixels_total: u64,
@@ -187,7 +195,7 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Renders a band, with more passes of fewer rays each where a bound is met.
+    /// Renders a band, with fewer samples a dispatch, then with more passes of fewer rays each where a bound is met.
     fn render_band(&mut self, rows: Range<u32>) -> Result<()> {
         loop {
             self.frame = self.plan.applied_to(self.frame);
@@ -204,6 +212,11 @@ impl Job<'_> {
             }
             if flags & STATUS_LOOP_BOUND == 0 {
                 return Ok(());
+            }
+            if self.most_samples > 1 {
+                self.most_samples = 1;
+                log::info!("a loop bound was met: rendering again with one sample a dispatch");
+                continue;
             }
             if !self.plan.can_halve() {
                 return Err(Error::Kernel(
@@ -222,36 +235,41 @@ impl Job<'_> {
         let band_rows = rows.end - rows.start;
         let order = BlockOrder::new(self.frame.image_size.x, band_rows);
         let (blocks, tile_stride) = (u64::from(order.places()), order.stride());
-        let passes = u64::from(self.frame.pass_count);
-        let samples = u64::from(self.options.samples.end - self.options.samples.start);
-        let total = samples * passes * blocks;
+        let samples = self.options.samples.clone();
+        let total = (samples.end - samples.start) as f64 * f64::from(self.frame.pass_count) * blocks as f64;
         let band_share = f64::from(band_rows) * f64::from(self.frame.image_size.x) / self.pixels_total as f64;
-        let done_before = self.pixels_before as f64 / self.pixels_total as f64 * samples as f64;
+        let done_before = self.pixels_before as f64 / self.pixels_total as f64 * samples.len() as f64;
         let portions = self.renderer.portions().max(1);
         let mut dispatches = Vec::new();
-        let mut next = 0;
-        while next < total {
-            let first = next;
+        let mut sweep = Sweep { samples: samples.start..samples.start, pass: 0, block: 0 };
+        let mut done = 0;
+        while sweep.samples.start < samples.end {
             dispatches.clear();
-            let run = (self.run_blocks as u64).max(1);
-            while next < total && next - first < run && dispatches.len() < MAX_DISPATCHES {
-                let (pass, block) = (next / blocks, next % blocks);
-                let mut count = (blocks - block).min(run - (next - first)).min(MAX_BLOCKS);
+            let run = (self.run as u64).max(1);
+            let mut taken = 0;
+            while sweep.samples.start < samples.end && taken < run && dispatches.len() < MAX_DISPATCHES {
+                if sweep.samples.is_empty() {
+                    sweep.samples.end = (sweep.samples.start + self.samples_at_once()).min(samples.end);
+                }
+                let sample_count = sweep.samples.len() as u64;
+                let mut count = (blocks - sweep.block).min((run - taken).div_ceil(sample_count)).min(MAX_BLOCKS);
                 if let Some(fixed) = self.options.blocks_per_dispatch {
                     count = count.min(u64::from(fixed.max(1)));
                 }
                 dispatches.push(Dispatch {
-                    sample_index: self.options.samples.start + (pass / passes) as u32,
-                    pass_index: (pass % passes) as u32,
+                    sample_index: sweep.samples.start,
+                    sample_count: sample_count as u32,
+                    pass_index: sweep.pass,
                     band_row: rows.start,
                     band_rows,
-                    first_block: block as u32,
+                    first_block: sweep.block as u32,
                     block_count: count as u32,
                     tile_stride,
                     portions,
                     canary_turns: CANARY_TURNS,
                 });
-                next += count;
+                taken += count * sample_count;
+                sweep.advance(count, blocks, self.frame.pass_count);
             }
             let submitted = Instant::now();
             let tally = self.renderer.submit(&self.frame, &dispatches)?;
@@ -263,10 +281,11 @@ impl Job<'_> {
                 return Ok(tally.flags);
             }
             let ratio = SUBMIT_TARGET.as_secs_f64() / took.as_secs_f64().max(1e-6);
-            self.run_blocks = ((next - first) as f64 * ratio.min(GROWTH)).max(1.0);
+            self.run = (taken as f64 * ratio.min(GROWTH)).max(1.0);
+            done += taken;
             let progress = Progress {
-                samples_done: done_before + next as f64 / total as f64 * samples as f64 * band_share,
-                samples_total: samples as u32,
+                samples_done: done_before + done as f64 / total * samples.len() as f64 * band_share,
+                samples_total: samples.len() as u32,
                 rays: self.tally.total_rays(),
                 elapsed: self.started.elapsed(),
             };
@@ -275,6 +294,41 @@ impl Job<'_> {
             }
         }
         Ok(0)
+    }
+
+    /// Camera samples of a pixel that the next dispatches take: several where a submit has blocks enough to keep all
+    /// processors busy even so.
+    fn samples_at_once(&self) -> u32 {
+        if self.options.samples_per_dispatch.is_some() {
+            return self.most_samples;
+        }
+        let fitting = self.run / f64::from(self.renderer.busy_blocks().max(1));
+        (fitting as u32).clamp(1, self.most_samples)
+    }
+}
+
+/// Where the work on a band stands: some samples at a time, each pass of them over all blocks.
+struct Sweep {
+    /// In hand; empty before it is known how many they are.
+    samples: Range<u32>,
+    pass: u32,
+    /// The first that this pass has not taken yet, by its place.
+    block: u64,
+}
+
+impl Sweep {
+    /// Goes on behind `count` blocks of the pass: to the next pass behind the last block, and to the next samples behind
+    /// the last pass.
+    fn advance(&mut self, count: u64, blocks: u64, passes: u32) {
+        self.block += count;
+        if self.block >= blocks {
+            self.block = 0;
+            self.pass += 1;
+        }
+        if self.pass >= passes {
+            self.pass = 0;
+            self.samples.start = self.samples.end;
+        }
     }
 }
 

@@ -62,6 +62,11 @@ pub trait Renderer {
         1
     }
 
+    /// Blocks that a dispatch needs to keep all processors busy.
+    fn busy_blocks(&self) -> u32 {
+        1
+    }
+
     /// What `prepare` has done so far; a renderer without programs and uploads counts nothing.
     fn prepare_counts(&self) -> PrepareCounts {
         PrepareCounts::default()

@@ -121,9 +121,14 @@ fn features_are_those_of_the_scene() {
     };
     for (shape, name) in shapes.into_iter().zip(names) {
         let analytic = !["HAS_PLANE", "HAS_MESH"].contains(&name);
-        let expected: Vec<&str> = [name].into_iter().chain(analytic.then_some("HAS_ANALYTIC")).collect();
+        let expected = if analytic { vec![name, "HAS_ANALYTIC", "HAS_INSTANCES"] } else { vec![name] };
         assert_eq!(on(flattened(&scene_of([(shape, DAffine3::IDENTITY)])).features), expected);
     }
+    // One mesh is met without a search for instances: beside planes, but beside nothing else.
+    let quad = || (Shape::Mesh(Arc::new(quad())), DAffine3::IDENTITY);
+    let plane = (Shape::Plane, DAffine3::IDENTITY);
+    assert_eq!(on(flattened(&scene_of([quad(), plane])).features), ["HAS_PLANE", "HAS_MESH"]);
+    assert_eq!(on(flattened(&scene_of([quad(), quad()])).features), ["HAS_MESH", "HAS_INSTANCES"]);
     let with_material = |material| {
         let mut stage = Stage::new(8, 8);
         stage.scene.sampling.glossy = 2;
@@ -131,18 +136,15 @@ fn features_are_those_of_the_scene() {
         on(flattened(&stage.finish()).features)
     };
 
-    assert_eq!(with_material(Material { glossy: 0.5, ..Material::default() }), ["HAS_CUBE", "HAS_ANALYTIC"]);
-    assert_eq!(
-        with_material(Material { reflection: 0.5, ..Material::default() }),
-        ["HAS_CUBE", "HAS_ANALYTIC", "HAS_REFLECTION"]
-    );
+    let of_cube = |further: &[&'static str]| [&["HAS_CUBE", "HAS_ANALYTIC", "HAS_INSTANCES"], further].concat();
+    assert_eq!(with_material(Material { glossy: 0.5, ..Material::default() }), of_cube(&[]));
+    let mirror = Material { reflection: 0.5, ..Material::default() };
+    assert_eq!(with_material(mirror), of_cube(&["HAS_REFLECTION"]));
     let glossy = Material { reflection: 0.5, glossy: 0.1, ..Material::default() };
-    assert_eq!(with_material(glossy), ["HAS_CUBE", "HAS_ANALYTIC", "HAS_REFLECTION", "HAS_GLOSSY"]);
+    assert_eq!(with_material(glossy), of_cube(&["HAS_REFLECTION", "HAS_GLOSSY"]));
     // Total internal reflection needs no reflective material.
-    assert_eq!(
-        with_material(Material { ior: Some(1.5), ..Material::default() }),
-        ["HAS_CUBE", "HAS_ANALYTIC", "HAS_REFLECTION", "HAS_REFRACTION"]
-    );
+    let glass = Material { ior: Some(1.5), ..Material::default() };
+    assert_eq!(with_material(glass), of_cube(&["HAS_REFLECTION", "HAS_REFRACTION"]));
     let mut stage = Stage::new(8, 8);
     stage.scene.camera.lens_edge = 0.5;
     stage.add_light(DVec3::Y, Vec3::ONE, LightExtent::Sphere { radius: 1.0 });

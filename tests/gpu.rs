@@ -83,6 +83,7 @@ fn runs(rows: std::ops::Range<u32>, run: u32, stride: impl Fn(u32) -> u32, sampl
         let block_count = run.min(blocks - first_block);
         Dispatch {
             sample_index: sample,
+            sample_count: 1,
             pass_index: 0,
             band_row: rows.start,
             band_rows,
@@ -195,6 +196,7 @@ fn every_dispatch_sees_its_own_parameters_and_the_frame_of_its_submit() {
     renderer.begin_band(3..HEIGHT).unwrap();
     let dispatch = |i: u32| Dispatch {
         sample_index: i,
+        sample_count: 1,
         pass_index: 100 + i,
         band_row: 3,
         band_rows: HEIGHT - 3,

@@ -87,6 +87,7 @@ fn rust_structs() -> Vec<Struct> {
         }),
         rust_struct!(Dispatch {
             sample_index,
+            sample_count,
             pass_index,
             band_row,
             band_rows,

@@ -155,6 +155,59 @@ fn tiles_and_batches_give_the_identical_film() {
     }
 }
 
+/// Up to four lights are told apart by constants, more are loaded one by one.
+#[test]
+fn few_and_many_lights_look_the_same_on_both_devices() {
+    let lit = |count: u32| {
+        let mut stage = mixed_stage();
+        stage.scene.lights.clear();
+        for i in 0..count {
+            let at = DVec3::new(2.0 * f64::from(i) - 3.0, 4.0, f64::from(i % 2) - 2.0);
+            let colour = Vec3::new(0.1 * (i + 1) as f32, 0.3, 0.6 - 0.1 * i as f32);
+            let round = LightExtent::Sphere { radius: 0.2 * f64::from(i + 1) };
+            stage.add_light(at, colour, if i % 2 == 0 { LightExtent::Classic } else { round });
+        }
+        stage
+    };
+    for count in [2, 3, 4, 5] {
+        let scene = lit(count).finish();
+        let buffers = flatten(&scene).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(buffers.features.many_lights, count > 4);
+        let [gpu, cpu] = [DeviceChoice::Gpu, DeviceChoice::Cpu].map(|device| render_whole(&scene, &device).film);
+        let comparison = compare(&gpu, &cpu, &scene);
+        assert!(agrees(&comparison), "{count} lights: {comparison}");
+
+        // The last light's colour must matter, or its place among the constants would not be seen.
+        let mut other = lit(count);
+        other.scene.lights[count as usize - 1].colour = Vec3::new(0.6, 0.3, 0.1);
+        let other = render_whole(&other.finish(), &DeviceChoice::Cpu).film;
+        assert!(!agrees(&compare(&gpu, &other, &scene)), "light {count} of another colour was not noticed");
+    }
+}
+
+/// However many samples a dispatch takes, the film is the same, and so are the rays.
+#[test]
+fn samples_taken_together_give_the_identical_film() {
+    let mut stage = mixed_stage();
+    stage.scene.sampling.camera = 7;
+    let scene = stage.finish();
+    for device in [DeviceChoice::Gpu, DeviceChoice::Cpu] {
+        let with = |count: u32, blocks: Option<u32>| {
+            render_with(&scene, &device, |options| {
+                options.samples_per_dispatch = Some(count);
+                options.blocks_per_dispatch = blocks;
+            })
+        };
+        let single = with(1, None);
+        assert!(single.film.pixels.iter().any(|pixel| pixel[0] > 0), "the picture is black");
+        for (count, blocks) in [(2, None), (3, Some(5)), (7, Some(1)), (100, None)] {
+            let together = with(count, blocks);
+            assert!(together.film == single.film, "{device:?}: {count} samples at a time, {blocks:?} blocks differ");
+            assert_eq!(together.tally, single.tally, "{device:?}: {count} samples at a time");
+        }
+    }
+}
+
 #[test]
 fn sample_ranges_add_up_to_the_identical_film() {
     let mut stage = mixed_stage();

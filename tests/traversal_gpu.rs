@@ -1,7 +1,7 @@
 //! Single rays through placed shapes: the GPU's hits and surfaces against the CPU's.
 
 use crate::support::placed::*;
-use glam::{UVec2, Vec3};
+use glam::{DAffine3, UVec2, Vec3};
 use gpu_trace::cpu::geometry::bvh::{scene_intersect, scene_occluded};
 use gpu_trace::cpu::geometry::hit::{Hit, Surface};
 use gpu_trace::cpu::geometry::instance::surface_at;
@@ -10,6 +10,7 @@ use gpu_trace::flatten::SceneBuffers;
 use gpu_trace::gpu::{Device, DeviceSelector, GpuOptions, GpuRenderer};
 use gpu_trace::layout::Dispatch;
 use gpu_trace::renderer::{Renderer, Tally};
+use gpu_trace::scene::Shape;
 use gpu_trace::shader::{Part, Program};
 use std::sync::Arc;
 
@@ -154,4 +155,23 @@ fn the_gpu_finds_what_the_cpu_finds() {
     let gpu = found_on_gpu(&buffers, &rays, &wrong);
     let different = cpu.iter().zip(&gpu).filter(|(a, b)| !alike(a, b)).count();
     assert!(different * 10 > hits, "only {different} rays of a wrong twin were noticed");
+}
+
+/// The kernel for one mesh has no hierarchy of instances: it must find what the one for all scenes does.
+#[test]
+fn the_only_mesh_is_found_as_among_others() {
+    let mut random = Random(5);
+    let ball = (Shape::Mesh(Arc::new(bumpy_ball(12))), random.transform(1.0));
+    let buffers = flattened(&scene_of([ball, (Shape::Plane, DAffine3::IDENTITY)]));
+    assert!(!buffers.features.instances);
+    let rays = rays_into(&buffers, &mut random, 8.0, 3000);
+    let mut general = buffers.clone();
+    general.features.instances = true;
+    let (alone, among) = (found_on_gpu(&buffers, &rays, TRACE_RAYS), found_on_gpu(&general, &rays, TRACE_RAYS));
+    let cpu = found_on_cpu(&buffers, &rays);
+    let on_mesh = cpu.iter().filter(|found| found.hit.t > 0.0 && found.hit.instance == buffers.frame.plane_count);
+    assert!(on_mesh.count() > 500);
+    assert_eq!(alone, among);
+    let different = cpu.iter().zip(&alone).filter(|(a, b)| !alike(a, b)).count();
+    assert!(different * 1000 <= rays.len(), "{different} differ");
 }

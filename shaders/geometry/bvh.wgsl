@@ -72,17 +72,24 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     var inverse = world_inverse;
     // The group in hand: nodes, or instances of meshes. The root, to begin with.
     var group = vec2<u32>(select(0u, frame.mist_root, in_mist), CHILD);
-    if HAS_MESH && count == 1u {
+    if !HAS_INSTANCES {
+        // In the only mesh from the beginning to the end.
+        instance = frame.plane_count;
+        if HAS_SHADOWLESS && (flags_of(instance) & mask) == 0u { return hit; }
+        group.x = root_of(instance);
+        let object_from_world = object_from_world_of(instance);
+        let object_direction = transform_vector(object_from_world, direction);
+        ray_origin = transform_point(object_from_world, origin);
+        triangle_space = triangle_ray(ray_origin, object_direction);
+        inverse = inverse_direction(object_direction);
+    } else if HAS_MESH && count == 1u {
         let only = frame.plane_count + select(0u, frame.bounded_count, in_mist);
         group = select(group, vec2<u32>(only, FIRST_MESH), shape_of(only) == SHAPE_MESH);
     }
 
-    for (var turn = 0u; ; turn++) {
-        if turn == TRAVERSAL_TURNS {
-            tally.flags |= STATUS_LOOP_BOUND;
-            break;
-        }
-        let is_mesh = HAS_MESH && (group.y & CHILD) == 0u;
+    var turn = 0u;
+    for (; ; turn++) {
+        let is_mesh = HAS_MESH && HAS_INSTANCES && (group.y & CHILD) == 0u;
         let bit = firstLeadingBit(group.y);
         let rest = select(group.y >> 4u, group.y & ~(1u << bit), is_mesh);
         // Written whether or not anything is left: what only some lanes do costs lavapipe a branch for each of them.
@@ -112,19 +119,20 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         let met = node_intersect(node, ray_origin, inverse, limit);
         group = vec2<u32>(node.children.x, met.children);
         // Instances of meshes come first among a node's primitives.
-        let meshes = met.primitives & ((1u << (node.grid.w >> 28u)) - 1u);
+        let meshes = select(0u, met.primitives & ((1u << (node.grid.w >> 28u)) - 1u), HAS_INSTANCES);
         var primitives_left = met.primitives ^ meshes;
-        while primitives_left != 0u && !is_over {
+        // All of them, even where any hit will do: a loop that waits for what the last one has brought is slower than
+        // one that goes on.
+        while primitives_left != 0u {
             let place = firstLeadingBit(primitives_left);
             primitives_left &= ~(1u << place);
             let index = node.children.y + place;
-            if HAS_MESH && (!HAS_ANALYTIC || return_height != NONE) {
+            if HAS_MESH && (!HAS_INSTANCES || !HAS_ANALYTIC || return_height != NONE) {
                 let triangle = triangle_at(index);
                 let met = triangle_intersect(triangle_space, triangle.p0, triangle.p1, triangle.p2, nearest);
                 if met.is_hit {
                     hit = Hit(met.t, instance, index, met.b1, met.b2);
                     nearest = met.t;
-                    is_over = any_hit;
                 }
                 continue;
             }
@@ -139,11 +147,10 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             if met.t > 0.0 {
                 hit = Hit(met.t, index, met.face, 0.0, 0.0);
                 nearest = met.t;
-                is_over = any_hit;
             }
         }
 
-        if HAS_MESH && meshes != 0u {
+        if HAS_MESH && HAS_INSTANCES && meshes != 0u {
             // The meshes first, then the node's inner children.
             let has_inner = group.y != 0u;
             let has_space = height < TRAVERSAL_STACK;
@@ -155,8 +162,9 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         // Back among the instances, and the group that was put aside last: read whether or not it is needed, as above.
         let top = stack_get(max(height, 1u) - 1u);
         let is_done = group.y == 0u;
-        if is_over || (is_done && height == 0u) { break; }
-        if HAS_MESH {
+        is_over = any_hit && hit.t > 0.0;
+        if is_over || (is_done && height == 0u) || turn == TRAVERSAL_TURNS { break; }
+        if HAS_MESH && HAS_INSTANCES {
             let leaves = is_done && height == return_height;
             return_height = select(return_height, NONE, leaves);
             ray_origin = select(ray_origin, origin, leaves);
@@ -165,6 +173,7 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         height -= select(0u, 1u, is_done);
         group = select(group, top, is_done);
     }
+    tally.flags |= select(0u, STATUS_LOOP_BOUND, turn == TRAVERSAL_TURNS);
     return hit;
 }
 

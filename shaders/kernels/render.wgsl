@@ -1,4 +1,4 @@
-// One pass of one camera sample for each pixel of a run of 8 x 8 blocks.
+// One pass of some camera samples for each pixel of a run of 8 x 8 blocks.
 
 @compute @workgroup_size(64)
 fn render(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
@@ -14,12 +14,17 @@ fn render(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_ind
 
     claim_stack(lane);
     tally = Tally(0u, vec4<u32>(0u));
-    tally.rays[RAY_CAMERA] = 1u;
-    let camera = camera_ray(pixel, dispatch.sample_index);
-    // Passes share a sample: each counts for its part, so that a film sums whole samples.
-    let radiance = path_radiance(camera, dispatch.sample_index) / f32(frame.pass_count);
     let film_index = in_band.y * frame.image_size.x + in_band.x;
-    film[film_index] = film_add(film[film_index], radiance);
+    var sum = film[film_index];
+    for (var i = 0u; i < dispatch.sample_count; i++) {
+        let sample_index = dispatch.sample_index + i;
+        tally.rays[RAY_CAMERA] += 1u;
+        let camera = camera_ray(pixel, sample_index);
+        // Passes share a sample: each counts for its part, so that a film sums whole samples.
+        let radiance = path_radiance(camera, sample_index) / f32(frame.pass_count);
+        sum = film_add(sum, radiance);
+    }
+    film[film_index] = sum;
 
     // Drivers that cap the turns of all loops of an invocation (Mesa before 23: 65,535) leave every loop early from then
     // on without a word; this one would too.

@@ -15,6 +15,9 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+/// Blocks a thread that keep it from waiting long for the others at the end of a dispatch.
+const BUSY_BLOCKS: u32 = 16;
+
 /// One 8 × 8 block of the film, rows from the top.
 #[derive(Clone)]
 struct FilmBlock([FilmPixel; (BLOCK_EDGE * BLOCK_EDGE) as usize]);
@@ -53,6 +56,10 @@ impl Renderer for CpuRenderer {
 
     fn max_band_pixels(&self) -> u64 {
         1 << 28
+    }
+
+    fn busy_blocks(&self) -> u32 {
+        BUSY_BLOCKS * rayon::current_num_threads() as u32
     }
 
     fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {
@@ -105,7 +112,7 @@ impl Renderer for CpuRenderer {
     }
 }
 
-/// One pass of one camera sample for each pixel of a block; what the kernel in `shaders/kernels/render.wgsl` does.
+/// One pass of some camera samples for each pixel of a block; what the kernel in `shaders/kernels/render.wgsl` does.
 fn render_block(scene: &Bindings, dispatch: &Dispatch, block: UVec2, film: &Mutex<FilmBlock>) -> Tally {
     let mut tally = Tally::default();
     let mut film = lock(film);
@@ -113,12 +120,15 @@ fn render_block(scene: &Bindings, dispatch: &Dispatch, block: UVec2, film: &Mute
     for y in 0..BLOCK_EDGE.min(dispatch.band_rows - corner.y) {
         for x in 0..BLOCK_EDGE.min(scene.frame.image_size.x - corner.x) {
             let pixel = corner + UVec2::new(x, y + dispatch.band_row);
-            tally.rays[RAY_CAMERA as usize] += 1;
-            let camera = camera_ray(scene.frame, pixel, dispatch.sample_index);
-            let radiance = path_radiance(scene, camera, dispatch.sample_index, dispatch.pass_index, &mut tally)
-                / scene.frame.pass_count as f32;
             let sum = &mut film.0[(y * BLOCK_EDGE + x) as usize];
-            *sum = film_add(*sum, radiance, &mut tally);
+            let first = dispatch.sample_index;
+            for sample_index in first..first.saturating_add(dispatch.sample_count) {
+                tally.rays[RAY_CAMERA as usize] += 1;
+                let camera = camera_ray(scene.frame, pixel, sample_index);
+                let radiance = path_radiance(scene, camera, sample_index, dispatch.pass_index, &mut tally)
+                    / scene.frame.pass_count as f32;
+                *sum = film_add(*sum, radiance, &mut tally);
+            }
         }
     }
     tally

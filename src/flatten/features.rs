@@ -18,6 +18,8 @@ pub struct FeatureSet {
     pub mesh: bool,
     /// Any bounded shape but meshes.
     pub analytic: bool,
+    /// Any bounded shape, mists included, beside one mesh.
+    pub instances: bool,
     /// A material that reflects, be it by total internal reflection.
     pub reflection: bool,
     /// A material with a refractive index.
@@ -52,6 +54,7 @@ impl FeatureSet {
         plane: false,
         mesh: false,
         analytic: false,
+        instances: false,
         reflection: false,
         refraction: false,
         glossy: false,
@@ -74,6 +77,7 @@ impl FeatureSet {
         plane: true,
         mesh: true,
         analytic: true,
+        instances: true,
         reflection: true,
         refraction: true,
         glossy: true,
@@ -96,6 +100,7 @@ impl FeatureSet {
             }
         }
         let has = |shape: u32| shapes[shape as usize];
+        let bounded = || buffers.instances.iter().filter(|instance| instance.shape != layout::SHAPE_PLANE);
         let materials = &buffers.materials;
         FeatureSet {
             sphere: has(layout::SHAPE_SPHERE),
@@ -105,10 +110,8 @@ impl FeatureSet {
             torus: has(layout::SHAPE_TORUS),
             plane: has(layout::SHAPE_PLANE),
             mesh: has(layout::SHAPE_MESH),
-            analytic: buffers
-                .instances
-                .iter()
-                .any(|instance| ![layout::SHAPE_PLANE, layout::SHAPE_MESH].contains(&instance.shape)),
+            analytic: bounded().any(|instance| instance.shape != layout::SHAPE_MESH),
+            instances: bounded().any(|instance| instance.shape != layout::SHAPE_MESH) || bounded().count() > 1,
             reflection: materials.iter().any(|material| material.reflection != 0.0 || material.ior != 0.0),
             refraction: materials.iter().any(|material| material.ior != 0.0),
             glossy: materials.iter().any(|material| material.reflection != 0.0 && material.glossy != 0.0),
@@ -139,6 +142,7 @@ impl FeatureSet {
             ("HAS_PLANE", self.plane),
             ("HAS_MESH", self.mesh),
             ("HAS_ANALYTIC", self.analytic),
+            ("HAS_INSTANCES", self.instances),
             ("HAS_REFLECTION", self.reflection),
             ("HAS_REFRACTION", self.refraction),
             ("HAS_GLOSSY", self.glossy),

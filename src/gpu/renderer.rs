@@ -14,6 +14,11 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
+/// Blocks a thread of a software device that keep it from waiting long for the others at the end of a dispatch.
+const SOFTWARE_BLOCKS: u32 = 16;
+/// Blocks, of 64 invocations each, that fill a large GPU.
+const HARDWARE_BLOCKS: u32 = 4096;
+
 /// How to run the kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpuOptions {
@@ -89,6 +94,11 @@ impl GpuRenderer {
     }
 }
 
+/// As many threads has lavapipe.
+fn cores() -> u32 {
+    std::thread::available_parallelism().map_or(1, |cores| cores.get() as u32)
+}
+
 impl Renderer for GpuRenderer {
     /// # Errors
     /// [`Error::Limit`] for a scene that the device cannot hold, [`Error::Shader`], and [`Error::Device`] where the
@@ -120,9 +130,11 @@ impl Renderer for GpuRenderer {
     }
 
     fn portions(&self) -> u32 {
-        // Lavapipe has a thread for each core.
-        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get() as u32);
-        if self.device.description().kind == DeviceKind::Software { cores } else { 1 }
+        if self.device.description().kind == DeviceKind::Software { cores() } else { 1 }
+    }
+
+    fn busy_blocks(&self) -> u32 {
+        if self.device.description().kind == DeviceKind::Software { SOFTWARE_BLOCKS * cores() } else { HARDWARE_BLOCKS }
     }
 
     fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {
