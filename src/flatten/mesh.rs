@@ -85,53 +85,42 @@ const MAX_PARTS: usize = 64;
 
 fn build(mesh: &Mesh) -> Result<BuiltMesh> {
     check(mesh)?;
-    let (uv_min, uv_extent) = uv_rectangle(mesh);
-    let triangles: Vec<Triangle> = mesh
+    let corners: Vec<[u32; 3]> = mesh
         .triangles
         .par_iter()
         .with_min_len(PORTION)
-        .filter_map(|corners| pack(mesh, *corners, uv_min, uv_extent))
+        .filter(|corners| area_normal(positions(mesh, **corners)).is_some())
+        .copied()
         .collect();
-    let boxes: Vec<Aabb> = triangles
+    let boxes: Vec<Aabb> = corners
         .par_iter()
         .with_min_len(PORTION)
-        .map(|triangle| {
-            let (p0, p1, p2) = (Vec3A::from(triangle.p0), Vec3A::from(triangle.p1), Vec3A::from(triangle.p2));
+        .map(|&corners| {
+            let [p0, p1, p2] = positions(mesh, corners).map(Vec3A::from);
             Aabb::new(p0.min(p1).min(p2), p0.max(p1).max(p2))
         })
         .collect();
-    let bounds = enclose(boxes.iter());
-    let hierarchy = bvh::over_triangles(&boxes);
+    // The collapse of the hierarchy is the work of one thread, which leaves the others free.
+    let (hierarchy, vertices) = rayon::join(|| bvh::over_triangles(&boxes), || PackedVertices::of(mesh));
     let run = boxes.len().div_ceil(MAX_PARTS).max(1);
     let parts = hierarchy.order.chunks(run).map(|run| enclose(run.iter().map(|&i| &boxes[i as usize]))).collect();
+    let pack = |&i: &u32| vertices.triangle(mesh, corners[i as usize]);
     Ok(BuiltMesh {
         parts,
-        triangles: hierarchy.order.par_iter().with_min_len(PORTION).map(|&i| triangles[i as usize]).collect(),
-        degenerate: mesh.triangles.len() - triangles.len(),
-        bounds,
-        uv_rectangle: Vec4::new(uv_min.x, uv_min.y, uv_extent.x, uv_extent.y),
+        triangles: hierarchy.order.par_iter().with_min_len(PORTION).map(pack).collect(),
+        degenerate: mesh.triangles.len() - corners.len(),
+        bounds: enclose(boxes.iter()),
+        uv_rectangle: vertices.uv_rectangle(),
         hierarchy,
     })
 }
 
-fn enclose<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> Bounds {
-    boxes.fold(Bounds::EMPTY, |bounds, own| bounds.extended(own.min.as_dvec3()).extended(own.max.as_dvec3()))
+fn positions(mesh: &Mesh, corners: [u32; 3]) -> [Vec3; 3] {
+    corners.map(|corner| mesh.positions[corner as usize])
 }
 
-/// Least texture coordinates of the corners, and their extent; zeros without any.
-fn uv_rectangle(mesh: &Mesh) -> (Vec2, Vec2) {
-    if mesh.uvs.is_empty() || mesh.triangles.is_empty() {
-        return (Vec2::ZERO, Vec2::ZERO);
-    }
-    let join = |(min, max): (Vec2, Vec2), (low, high): (Vec2, Vec2)| (min.min(low), max.max(high));
-    let none = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-    let of_portion = |triangles: &[[u32; 3]]| {
-        let uvs = triangles.iter().flatten().map(|&corner| uv(mesh, corner));
-        uvs.fold(none, |rectangle, uv| join(rectangle, (uv, uv)))
-    };
-    let portions: Vec<(Vec2, Vec2)> = mesh.triangles.par_chunks(PORTION).map(of_portion).collect();
-    let (min, max) = portions.into_iter().fold(none, join);
-    (min, max - min)
+fn enclose<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> Bounds {
+    boxes.fold(Bounds::EMPTY, |bounds, own| bounds.extended(own.min.as_dvec3()).extended(own.max.as_dvec3()))
 }
 
 fn check(mesh: &Mesh) -> Result<()> {
@@ -142,13 +131,18 @@ fn check(mesh: &Mesh) -> Result<()> {
             return refuse(format!("{length} {what} for {count} vertices"));
         }
     }
-    let corners = || mesh.triangles.par_iter().with_min_len(PORTION).flatten_iter().copied();
-    if let Some(corner) = corners().find_first(|&corner| corner as usize >= count) {
+    // Portion by portion: a search that stops at the first fault is slow to pass over what is right.
+    let first = |is_wrong: &(dyn Fn(u32) -> bool + Sync)| {
+        let portions = mesh.triangles.par_chunks(PORTION);
+        let wrong = portions.find_first(|portion| portion.as_flattened().iter().any(|&corner| is_wrong(corner)))?;
+        wrong.as_flattened().iter().copied().find(|&corner| is_wrong(corner))
+    };
+    if let Some(corner) = first(&|corner| corner as usize >= count) {
         return refuse(format!("a triangle refers to vertex {corner}, but there are only {count}"));
     }
     let is_far_position = |corner| !mesh.positions[corner as usize].abs().cmple(Vec3::splat(MAX_COORDINATE)).all();
     let is_far_uv = |corner| !uv(mesh, corner).abs().cmple(Vec2::splat(MAX_COORDINATE)).all();
-    match corners().find_first(|&corner| is_far_position(corner) || is_far_uv(corner)) {
+    match first(&|corner| is_far_position(corner) || is_far_uv(corner)) {
         None => Ok(()),
         Some(corner) if is_far_position(corner) => {
             let position = mesh.positions[corner as usize];
@@ -165,24 +159,79 @@ fn uv(mesh: &Mesh, corner: u32) -> Vec2 {
     mesh.uvs.get(corner as usize).copied().unwrap_or(Vec2::ZERO)
 }
 
-/// `None` where the corners lie on a line.
-fn pack(mesh: &Mesh, corners: [u32; 3], uv_min: Vec2, uv_extent: Vec2) -> Option<Triangle> {
-    let [p0, p1, p2] = corners.map(|corner| mesh.positions[corner as usize]);
+/// A normal of the triangle, of no particular length; `None` where the corners lie on a line.
+fn area_normal([p0, p1, p2]: [Vec3; 3]) -> Option<Vec3> {
     // In single precision, since that is how the renderers compute it.
     let (edge1, edge2) = (p1 - p0, p2 - p0);
     let size = edge1.abs().max(edge2.abs()).max_element();
     let normal = (edge1 / size).cross(edge2 / size);
-    if !(size > MIN_EDGE && normal.abs().max_element() > MIN_EDGE) {
-        return None;
-    }
-    let face_normal = normal.as_dvec3().normalize();
+    (size > MIN_EDGE && normal.abs().max_element() > MIN_EDGE).then_some(normal)
+}
 
-    // A vertex without a normal of its own takes that of the face.
-    let given = corners.map(|corner| mesh.normals.get(corner as usize)?.as_dvec3().try_normalize());
-    let smooth = given.iter().any(Option::is_some);
-    let [n0, n1, n2] = given.map(|normal| encode_octahedral(normal.unwrap_or(face_normal).as_vec3()));
-    let [uv0, uv1, uv2] = corners.map(|corner| encode_uv(uv(mesh, corner), uv_min, uv_extent));
-    Some(Triangle { p0, n0, p1, n1, p2, n2, uv0, uv1, uv2, flags: if smooth { TRIANGLE_SMOOTH } else { 0 } })
+/// What triangles take from their vertices beside the positions.
+struct PackedVertices {
+    /// `None` for a vertex without a normal; shorter than the positions where there are no normals.
+    normals: Vec<Option<u32>>,
+    /// Likewise.
+    uvs: Vec<u32>,
+    uv_min: Vec2,
+    uv_extent: Vec2,
+}
+
+impl PackedVertices {
+    fn of(mesh: &Mesh) -> Self {
+        let (uv_min, uv_extent) = uv_rectangle(mesh);
+        let pack_normal = |normal: &Vec3| {
+            let unit = normal.as_dvec3().try_normalize()?;
+            Some(encode_octahedral(unit.as_vec3()))
+        };
+        let pack_uv = |uv: &Vec2| encode_uv(*uv, uv_min, uv_extent);
+        PackedVertices {
+            normals: mesh.normals.par_iter().with_min_len(PORTION).map(pack_normal).collect(),
+            uvs: mesh.uvs.par_iter().with_min_len(PORTION).map(pack_uv).collect(),
+            uv_min,
+            uv_extent,
+        }
+    }
+
+    /// Least texture coordinates and their extent.
+    fn uv_rectangle(&self) -> Vec4 {
+        Vec4::new(self.uv_min.x, self.uv_min.y, self.uv_extent.x, self.uv_extent.y)
+    }
+
+    /// A triangle that has an area.
+    fn triangle(&self, mesh: &Mesh, corners: [u32; 3]) -> Triangle {
+        let [p0, p1, p2] = positions(mesh, corners);
+        let given = corners.map(|corner| self.normals.get(corner as usize).copied().flatten());
+        let smooth = given.iter().any(Option::is_some);
+        // A vertex without a normal of its own takes that of the face.
+        let [n0, n1, n2] = match given {
+            [Some(n0), Some(n1), Some(n2)] => [n0, n1, n2],
+            _ => {
+                let normal = area_normal([p0, p1, p2]).unwrap_or(Vec3::Y).as_dvec3().normalize();
+                let face = encode_octahedral(normal.as_vec3());
+                given.map(|normal| normal.unwrap_or(face))
+            }
+        };
+        let [uv0, uv1, uv2] = corners.map(|corner| self.uvs.get(corner as usize).copied().unwrap_or(0));
+        Triangle { p0, n0, p1, n1, p2, n2, uv0, uv1, uv2, flags: if smooth { TRIANGLE_SMOOTH } else { 0 } }
+    }
+}
+
+/// Least texture coordinates of the corners, and their extent; zeros without any.
+fn uv_rectangle(mesh: &Mesh) -> (Vec2, Vec2) {
+    if mesh.uvs.is_empty() || mesh.triangles.is_empty() {
+        return (Vec2::ZERO, Vec2::ZERO);
+    }
+    let join = |(min, max): (Vec2, Vec2), (low, high): (Vec2, Vec2)| (min.min(low), max.max(high));
+    let none = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+    let of_portion = |triangles: &[[u32; 3]]| {
+        let uvs = triangles.iter().flatten().map(|&corner| uv(mesh, corner));
+        uvs.fold(none, |rectangle, uv| join(rectangle, (uv, uv)))
+    };
+    let portions: Vec<(Vec2, Vec2)> = mesh.triangles.par_chunks(PORTION).map(of_portion).collect();
+    let (min, max) = portions.into_iter().fold(none, join);
+    (min, max - min)
 }
 
 /// A unit vector as a point of the unfolded octahedron, two 16-bit snorms, x in the low half (Cigolle et al.,
