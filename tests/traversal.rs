@@ -18,21 +18,27 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// For each mesh, by the root of its hierarchy, its triangles. Only what leaves there are is read, and no box.
+/// For each node that rays enter meshes at, the triangles below it. Only what leaves there are is read, and no box.
 fn triangle_ranges(buffers: &SceneBuffers) -> BTreeMap<u32, Range<u32>> {
     let is_mesh = |instance: &&Instance| instance.shape == SHAPE_MESH;
     let roots: BTreeSet<u32> = buffers.instances.iter().filter(is_mesh).map(|instance| instance.root).collect();
-    let ends = roots.iter().copied().skip(1).chain([buffers.nodes.len() as u32]);
-    let mut start = 0;
-    let mut ranges = BTreeMap::new();
-    for (root, end) in roots.iter().copied().zip(ends) {
-        let nodes = &buffers.nodes[root as usize..end as usize];
-        let metas = nodes.iter().flat_map(|node| [node.children.z, node.children.w]).flat_map(u32::to_le_bytes);
-        let count: u32 = metas.map(|meta| (meta >> 5).count_ones()).sum();
-        ranges.insert(root, start..start + count);
-        start += count;
-    }
-    assert_eq!(start as usize, buffers.triangles.len());
+    let below = |root: u32| {
+        let mut triangles = BTreeSet::new();
+        let mut nodes = vec![root];
+        while let Some(index) = nodes.pop() {
+            let node = &buffers.nodes[index as usize];
+            let metas = [node.children.z, node.children.w].map(u32::to_le_bytes);
+            let count: u32 = metas.as_flattened().iter().map(|meta| (meta >> 5).count_ones()).sum();
+            triangles.extend(node.children.y..node.children.y + count);
+            nodes.extend(node.children.x..node.children.x + (node.grid.w >> 24 & 15));
+        }
+        let range = *triangles.first().expect("a mesh has triangles")..triangles.last().expect("likewise") + 1;
+        assert_eq!(range.len(), triangles.len(), "the triangles below node {root} lie apart");
+        range
+    };
+    let ranges: BTreeMap<u32, Range<u32>> = roots.into_iter().map(|root| (root, below(root))).collect();
+    let reached: BTreeSet<u32> = ranges.values().cloned().flatten().collect();
+    assert_eq!(reached.len(), buffers.triangles.len());
     ranges
 }
 
@@ -163,16 +169,21 @@ fn large_and_small_and_far_scenes_are_too() {
 
 #[test]
 fn meshes_of_thousands_of_triangles_are_too() {
-    let mut random = Random(13);
-    let ball = Arc::new(bumpy_ball(40));
-    let place = |i: u32| {
-        let centre = DVec3::new(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)) * 2.5 - 2.5;
-        (Shape::Mesh(ball.clone()), DAffine3::from_translation(centre) * random.transform(0.0))
-    };
-    let buffers = flattened(&scene_of((0..27).map(place).collect::<Vec<_>>()));
-    let rays = rays_into(&buffers, &mut Random(14), 5.0, 1500);
-    let result = assert_same("27 balls of 6,400 triangles", &buffers, &rays);
-    assert!(result.hits > 500);
+    // In a crowd they are entered below their roots, by themselves at these.
+    for (distance, in_parts) in [(2.5, true), (25.0, false)] {
+        let mut random = Random(13);
+        let ball = Arc::new(bumpy_ball(40));
+        let place = |i: u32| {
+            let centre = DVec3::new(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)) * distance - distance;
+            (Shape::Mesh(ball.clone()), DAffine3::from_translation(centre) * random.transform(0.0))
+        };
+        let buffers = flattened(&scene_of((0..27).map(place).collect::<Vec<_>>()));
+        assert_eq!(buffers.statistics.instances, 27);
+        assert_eq!(buffers.instances.len() > 2 * 27, in_parts, "{} members", buffers.instances.len());
+        let rays = rays_into(&buffers, &mut Random(14), 2.0 * distance, 1500);
+        let result = assert_same("27 balls of 6,400 triangles", &buffers, &rays);
+        assert!(result.hits > 500);
+    }
 }
 
 /// A floor of unit squares, seen straight down at corners, along edges and in the middle: nothing may slip through.

@@ -7,6 +7,7 @@ use glam::UVec4;
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
+use std::ops::Range;
 
 /// Groups that a ray can put aside; `shaders/geometry/bvh.wgsl` has the same constant. Where it enters a mesh it puts
 /// two aside, and `build` keeps each level of the hierarchy within half of the rest.
@@ -28,6 +29,21 @@ pub struct Hierarchy {
     pub order: Vec<u32>,
     /// Levels of nodes.
     pub depth: u32,
+}
+
+impl Hierarchy {
+    /// The children of the root, each with the places in `order` of the primitives below it; none if some are leaves.
+    pub fn root_children(&self) -> Vec<(u32, Range<usize>)> {
+        let Some(root) = self.nodes.first() else { return Vec::new() };
+        let nodes = inner_children(root);
+        // Nodes lie in the order of their primitives: those of the root's own leaves, then those of each child.
+        let start = |node: u32| self.nodes[node as usize].children.y as usize;
+        if nodes.is_empty() || start(nodes.start) > 0 {
+            return Vec::new();
+        }
+        let ends = nodes.clone().skip(1).map(start).chain([self.order.len()]);
+        nodes.clone().zip(ends).map(|(node, end)| (node, start(node)..end)).collect()
+    }
 }
 
 /// Builds the hierarchy over the boxes of triangles, which must be finite and small enough that their areas are too.
@@ -113,7 +129,7 @@ pub fn append(nodes: &mut Vec<Node>, hierarchy: &[Node], first_primitive: u32) {
 }
 
 /// The inner children of a node, which lie side by side.
-fn inner_children(node: &Node) -> std::ops::Range<u32> {
+fn inner_children(node: &Node) -> Range<u32> {
     node.children.x..node.children.x + (node.grid.w >> 24 & 15)
 }
 

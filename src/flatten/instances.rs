@@ -4,6 +4,7 @@ use super::bounds::{Bounds, shape_bounds};
 use super::bvh;
 use super::mesh::Meshes;
 use super::mist::Mists;
+use super::rebraid;
 use super::walk::Placement;
 use crate::layout::{
     AffineRows, INSTANCE_MIST, INSTANCE_SEEN, INSTANCE_SHADES, Instance, NONE, Node, SHAPE_CONE, SHAPE_CUBE,
@@ -17,9 +18,23 @@ use obvhs::aabb::Aabb;
 /// World coordinates beyond this have areas that single precision cannot add up.
 const MAX_COORDINATE: f64 = 1e12;
 
+/// A bounded shape, or a part of one, as the upper level of the hierarchy has it.
+#[derive(Clone, Copy)]
+pub struct Member {
+    /// The index of a mesh stands in for its root, which is known once the upper level is built.
+    pub instance: Instance,
+    /// In world space.
+    pub bounds: Aabb,
+    /// The node, of the mesh's own, that rays enter it at.
+    pub entry: u32,
+    pub world_from_object: DAffine3,
+}
+
 /// The upper level of the hierarchy and what it is over.
 pub struct BuiltInstances {
     pub instances: Vec<Instance>,
+    /// Shapes that were placed: those that are in parts are one here, and several in `instances`.
+    pub placed: usize,
     pub plane_count: u32,
     /// After the planes; the others after them are mists.
     pub surface_count: u32,
@@ -42,8 +57,7 @@ pub fn build(
     mut mists: Mists,
 ) -> Result<BuiltInstances> {
     let mut planes = Vec::new();
-    let mut bounded = Vec::with_capacity(placements.len());
-    let mut boxes = Vec::with_capacity(placements.len());
+    let mut members = Vec::with_capacity(placements.len());
     let mut instanced_triangles = 0;
     for (placement, &material) in placements.iter().zip(materials) {
         let name = &graph.node(placement.node).name;
@@ -73,7 +87,6 @@ pub fn build(
         }
         let bounds = match &placement.geometry.shape {
             Shape::Mesh(mesh) => {
-                // The mesh's index stands in for its root, which is known once the upper level is built.
                 let Some(index) = meshes.index_of(mesh) else { continue };
                 let mesh = &meshes.built[index];
                 instance.root = index as u32;
@@ -96,30 +109,31 @@ pub fn build(
                 bounds.min, bounds.max
             )));
         }
-        bounded.push(instance);
-        boxes.push(bounds.padded());
+        members.push(Member { instance, bounds: bounds.padded(), entry: 0, world_from_object });
     }
-    Ok(ordered(planes, bounded, &boxes, meshes, instanced_triangles))
+    let placed = planes.len() + members.len();
+    Ok(ordered(planes, &rebraid::open(members, meshes), meshes, placed, instanced_triangles))
 }
 
 fn casts_shadow(graph: &SceneGraph, placement: &Placement) -> bool {
     placement.material.is_none_or(|id| graph.materials[id.0 as usize].casts_shadow)
 }
 
-/// Planes first, then surfaces and then mists, each in the order of their leaves; the roots of meshes where `flatten` will put them.
+/// Planes first, then surfaces and then mists, each in the order of their leaves; the roots of meshes where `flatten`
+/// will put them.
 fn ordered(
     planes: Vec<Instance>,
-    bounded: Vec<Instance>,
-    boxes: &[Aabb],
+    members: &[Member],
     meshes: &Meshes,
+    placed: usize,
     instanced_triangles: u64,
 ) -> BuiltInstances {
     let plane_count = planes.len() as u32;
-    let (mists, surfaces): (Vec<u32>, Vec<u32>) =
-        (0..bounded.len() as u32).partition(|&i| bounded[i as usize].flags & INSTANCE_MIST != 0);
-    let build = |members: &[u32]| {
-        let boxes: Vec<Aabb> = members.iter().map(|&i| boxes[i as usize]).collect();
-        bvh::over_instances(&boxes, |i| bounded[members[i as usize] as usize].shape == SHAPE_MESH)
+    let (mists, surfaces): (Vec<&Member>, Vec<&Member>) =
+        members.iter().partition(|member| member.instance.flags & INSTANCE_MIST != 0);
+    let build = |members: &[&Member]| {
+        let boxes: Vec<Aabb> = members.iter().map(|member| member.bounds).collect();
+        bvh::over_instances(&boxes, |i| members[i as usize].instance.shape == SHAPE_MESH)
     };
     let (over_surfaces, over_mists) = (build(&surfaces), build(&mists));
     let surface_count = surfaces.len() as u32;
@@ -136,16 +150,16 @@ fn ordered(
     let mut instances = planes;
     let in_order = over_surfaces.order.iter().map(|&i| surfaces[i as usize]);
     let in_order = in_order.chain(over_mists.order.iter().map(|&i| mists[i as usize]));
-    instances.extend(in_order.map(|i| {
-        let mut instance = bounded[i as usize];
+    instances.extend(in_order.map(|member| {
+        let mut instance = member.instance;
         if instance.shape == SHAPE_MESH {
-            instance.root = roots[instance.root as usize];
+            instance.root = roots[instance.root as usize] + member.entry;
         }
         instance
     }));
     let mesh_depth = meshes.built.iter().map(|mesh| mesh.hierarchy.depth).max().unwrap_or(0);
     let depth = over_surfaces.depth.max(over_mists.depth) + mesh_depth;
-    BuiltInstances { instances, plane_count, surface_count, nodes, mist_root, instanced_triangles, depth }
+    BuiltInstances { instances, placed, plane_count, surface_count, nodes, mist_root, instanced_triangles, depth }
 }
 
 /// The box around a shape in its own space; `None` for a plane.

@@ -11,6 +11,7 @@ use glam::{DAffine3, DVec3, Vec2, Vec3, Vec3A, Vec4};
 use obvhs::aabb::Aabb;
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A mesh ready for the buffers.
@@ -24,6 +25,8 @@ pub struct BuiltMesh {
     /// Boxes that hold the mesh together, at most [`MAX_PARTS`]: turned with an instance and then enclosed, they leave
     /// less empty space than `bounds` would, and fewer rays enter the instance in vain.
     parts: Vec<Bounds>,
+    /// The children of the hierarchy's root; none where some of these are leaves.
+    pub children: Vec<RootChild>,
     /// Least texture coordinates and their extent.
     pub uv_rectangle: Vec4,
     /// Triangles without an area, left out.
@@ -33,8 +36,27 @@ pub struct BuiltMesh {
 impl BuiltMesh {
     /// The box around the mesh in another space.
     pub fn bounds_in(&self, map: &DAffine3) -> Bounds {
-        self.parts.iter().map(|part| part.transformed(map)).fold(Bounds::EMPTY, Bounds::union)
+        around(&self.parts, map)
     }
+}
+
+/// A node that rays can enter a mesh at in place of the root.
+#[derive(Debug)]
+pub struct RootChild {
+    pub node: u32,
+    /// As those of the mesh.
+    parts: Vec<Bounds>,
+}
+
+impl RootChild {
+    /// The box around what the node leads to in another space.
+    pub fn bounds_in(&self, map: &DAffine3) -> Bounds {
+        around(&self.parts, map)
+    }
+}
+
+fn around(parts: &[Bounds], map: &DAffine3) -> Bounds {
+    parts.iter().map(|part| part.transformed(map)).fold(Bounds::EMPTY, Bounds::union)
 }
 
 /// The different meshes of a scene, in the order of their first use.
@@ -102,11 +124,19 @@ fn build(mesh: &Mesh) -> Result<BuiltMesh> {
         .collect();
     // The collapse of the hierarchy is the work of one thread, which leaves the others free.
     let (hierarchy, vertices) = rayon::join(|| bvh::over_triangles(&boxes), || PackedVertices::of(mesh));
-    let run = boxes.len().div_ceil(MAX_PARTS).max(1);
-    let parts = hierarchy.order.chunks(run).map(|run| enclose(run.iter().map(|&i| &boxes[i as usize]))).collect();
+    let parts = |order: &[u32], most: usize| {
+        let runs = order.chunks(order.len().div_ceil(most).max(1));
+        runs.map(|run| enclose(run.iter().map(|&i| &boxes[i as usize]))).collect()
+    };
+    let child = |(node, members): (u32, Range<usize>)| RootChild {
+        node,
+        parts: parts(&hierarchy.order[members], MAX_PARTS / 8),
+    };
+    let children = hierarchy.root_children().into_iter().map(child).collect();
     let pack = |&i: &u32| vertices.triangle(mesh, corners[i as usize]);
     Ok(BuiltMesh {
-        parts,
+        parts: parts(&hierarchy.order, MAX_PARTS),
+        children,
         triangles: hierarchy.order.par_iter().with_min_len(PORTION).map(pack).collect(),
         degenerate: mesh.triangles.len() - corners.len(),
         bounds: enclose(boxes.iter()),

@@ -12,6 +12,7 @@ mod lights;
 mod materials;
 mod mesh;
 mod mist;
+mod rebraid;
 mod walk;
 mod work;
 
@@ -137,6 +138,7 @@ pub fn flatten_with(scene: &Scene, cache: &FlattenCache) -> Result<SceneBuffers>
         features: FeatureSet::ALL_OFF,
         statistics: Statistics {
             meshes: meshes.built.len(),
+            instances: built.placed,
             instanced_triangles: built.instanced_triangles,
             degenerate_triangles: meshes.built.iter().map(|mesh| mesh.degenerate).sum(),
             depth: built.depth,
@@ -146,7 +148,6 @@ pub fn flatten_with(scene: &Scene, cache: &FlattenCache) -> Result<SceneBuffers>
     };
     buffers.features = FeatureSet::of(&buffers);
     buffers.statistics.triangles = buffers.triangles.len();
-    buffers.statistics.instances = buffers.instances.len();
     buffers.statistics.buffer_bytes = buffers.bytes();
     buffers.statistics.seconds = start.elapsed().as_secs_f64();
     Ok(buffers)
