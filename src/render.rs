@@ -1,6 +1,6 @@
 //! The sample loop that both renderers serve: which pass of which sample runs where, and for how long.
 
-use crate::blocks::{BLOCK_EDGE, BlockOrder};
+use crate::blocks::{BLOCK_EDGE, BlockOrder, TILE_BLOCKS};
 use crate::cpu::bindings::Bindings;
 use crate::cpu::media::{media_at, mists_at};
 use crate::cpu::shading::medium::MIST_CROSSINGS;
@@ -25,6 +25,8 @@ const MAX_DISPATCHES: usize = 256;
 const MAX_BLOCKS: u64 = 1 << 15;
 /// The most camera samples of a pixel in one dispatch: the more, the less is spent on reaching the film and the counters.
 const MAX_SAMPLES: u32 = 8;
+/// Blocks that tell how hard the picture is: a run of fewer may take much longer than the run before it.
+const FAIR_BLOCKS: u32 = 16 * TILE_BLOCKS;
 /// Turns of the loop that shows whether the driver cuts loops short.
 const CANARY_TURNS: u32 = 4;
 
@@ -296,13 +298,13 @@ impl Job<'_> {
         Ok(0)
     }
 
-    /// Camera samples of a pixel that the next dispatches take: several where a submit has blocks enough to keep all
-    /// processors busy even so.
+    /// Camera samples of a pixel that the next dispatches take: several where a submit has blocks enough even so, to keep
+    /// all processors busy and to be foreseen.
     fn samples_at_once(&self) -> u32 {
         if self.options.samples_per_dispatch.is_some() {
             return self.most_samples;
         }
-        let fitting = self.run / f64::from(self.renderer.busy_blocks().max(1));
+        let fitting = self.run / f64::from(self.renderer.busy_blocks().max(FAIR_BLOCKS));
         (fitting as u32).clamp(1, self.most_samples)
     }
 }

@@ -36,7 +36,7 @@ fn mist_intersect(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> Hit {
     return traverse(origin, direction, t_max, false, INSTANCE_MIST);
 }
 
-// Meets the instances whose flags share a bit with the mask; with any_hit, the first that comes.
+// Meets the instances whose flags share a bit with the mask; with any_hit, it ends soon after the first that comes.
 fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, mask: u32) -> Hit {
     var hit = Hit(MISS, NONE, 0u, 0.0, 0.0);
     var nearest = t_max;
