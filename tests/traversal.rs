@@ -354,16 +354,19 @@ fn turned_meshes_are_met_at_every_triangle() {
         triangles: (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         ..Mesh::default()
     });
-    // Two instances, since one alone is entered without its box.
-    let turned = DAffine3::from_rotation_y(0.7);
-    let lifted = DAffine3::from_translation(DVec3::new(0.0, -50.0, 0.0)) * turned;
-    let buffers = flattened(&scene_of([turned, lifted].map(|map| (Shape::Mesh(mesh.clone()), map))));
-    for map in [turned, lifted] {
-        for i in 0..count {
-            let target = map.transform_point3(DVec3::new(f64::from(corner(i)) + 0.25, 0.0, 0.25)).as_vec3();
-            let (origin, mut tally) = (target + Vec3::Y, Tally::default());
-            let hit = scene_intersect(&bindings(&buffers), origin, Vec3::NEG_Y, 10.0, &mut tally);
-            assert!((hit.t - 1.0).abs() < 1e-4, "triangle {i}: {hit:?}");
+    // Two instances, since one alone is entered without its box; and a crowd, whose rows are in parts with own boxes.
+    for (instances, distance, in_parts) in [(2, 50.0, false), (6, 2.0, true)] {
+        let lifted = |i: u32| DAffine3::from_translation(DVec3::Y * distance * f64::from(i));
+        let maps: Vec<DAffine3> = (0..instances).map(|i| lifted(i) * DAffine3::from_rotation_y(0.7)).collect();
+        let buffers = flattened(&scene_of(maps.iter().map(|map| (Shape::Mesh(mesh.clone()), *map))));
+        assert_eq!(buffers.instances.len() > maps.len(), in_parts, "{} members", buffers.instances.len());
+        for map in maps {
+            for i in 0..count {
+                let target = map.transform_point3(DVec3::new(f64::from(corner(i)) + 0.25, 0.0, 0.25)).as_vec3();
+                let (origin, mut tally) = (target + Vec3::Y, Tally::default());
+                let hit = scene_intersect(&bindings(&buffers), origin, Vec3::NEG_Y, 10.0, &mut tally);
+                assert!((hit.t - 1.0).abs() < 1e-4, "triangle {i}: {hit:?}");
+            }
         }
     }
 }
