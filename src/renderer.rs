@@ -40,6 +40,9 @@ pub struct PrepareCounts {
     pub buffers_reused: u64,
 }
 
+/// Blocks a thread that keep it from waiting long for the others at the end of a dispatch.
+pub const BLOCKS_A_THREAD: u32 = 16;
+
 /// A device that renders passes of samples into the film of a band of rows.
 pub trait Renderer {
     /// Uploads the scene and specialises the program to it.

@@ -8,15 +8,12 @@ use crate::cpu::path::path_radiance;
 use crate::film::Film;
 use crate::flatten::SceneBuffers;
 use crate::layout::{Dispatch, FilmPixel, Frame, RAY_CAMERA};
-use crate::renderer::{Renderer, Tally};
+use crate::renderer::{BLOCKS_A_THREAD, Renderer, Tally};
 use crate::{Error, Result};
 use glam::UVec2;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// Blocks a thread that keep it from waiting long for the others at the end of a dispatch.
-const BUSY_BLOCKS: u32 = 16;
 
 /// One 8 × 8 block of the film, rows from the top.
 #[derive(Clone)]
@@ -59,7 +56,7 @@ impl Renderer for CpuRenderer {
     }
 
     fn busy_blocks(&self) -> u32 {
-        BUSY_BLOCKS * rayon::current_num_threads() as u32
+        BLOCKS_A_THREAD * rayon::current_num_threads() as u32
     }
 
     fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {

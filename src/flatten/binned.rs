@@ -228,3 +228,28 @@ fn longest_axis(extent: Vec3A) -> usize {
         2
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two heaps of boxes, far apart along one axis and mixed along the others, come apart at the root.
+    #[test]
+    fn heaps_are_told_apart_by_sorting_and_by_bins() {
+        for count in [3, 5, SWEPT_PRIMITIVES, SWEPT_PRIMITIVES + 1, 100] {
+            for axis in 0..3 {
+                let boxes = (0..count).map(|i| {
+                    let mut corner = Vec3A::splat((i * 7 % count) as f32 / count as f32);
+                    corner[axis] = if i % 3 == 0 { 100.0 } else { 0.0 };
+                    Aabb::new(corner, corner + 0.1)
+                });
+                let tree = build(&boxes.collect::<Vec<_>>(), 48);
+                let children = tree.nodes[0].first_index as usize;
+                for side in &tree.nodes[children..children + 2] {
+                    let extent = side.aabb().max - side.aabb().min;
+                    assert!(extent.max_element() < 2.0, "{count} boxes along axis {axis}: {extent}");
+                }
+            }
+        }
+    }
+}

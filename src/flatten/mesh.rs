@@ -105,6 +105,9 @@ const PORTION: usize = 4096;
 /// Runs of triangles, neighbours in the hierarchy, that get a box each.
 const MAX_PARTS: usize = 64;
 
+/// Likewise below each of a root's children, of which there are up to eight.
+const MAX_CHILD_PARTS: usize = MAX_PARTS / 8;
+
 fn build(mesh: &Mesh) -> Result<BuiltMesh> {
     check(mesh)?;
     let corners: Vec<[u32; 3]> = mesh
@@ -130,7 +133,7 @@ fn build(mesh: &Mesh) -> Result<BuiltMesh> {
     };
     let child = |(node, members): (u32, Range<usize>)| RootChild {
         node,
-        parts: parts(&hierarchy.order[members], MAX_PARTS / 8),
+        parts: parts(&hierarchy.order[members], MAX_CHILD_PARTS),
     };
     let children = hierarchy.root_children().into_iter().map(child).collect();
     let pack = |&i: &u32| vertices.triangle(mesh, corners[i as usize]);

@@ -6,7 +6,7 @@ use super::pipeline::Pipeline;
 use crate::film::Film;
 use crate::flatten::{FeatureSet, SceneBuffers};
 use crate::layout::{Dispatch, FilmPixel, Frame};
-use crate::renderer::{PrepareCounts, Renderer, Tally};
+use crate::renderer::{BLOCKS_A_THREAD, PrepareCounts, Renderer, Tally};
 use crate::shader::{Program, RENDER_ENTRY_POINT};
 use crate::{Error, Result};
 use std::collections::HashMap;
@@ -14,8 +14,6 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Blocks a thread of a software device that keep it from waiting long for the others at the end of a dispatch.
-const SOFTWARE_BLOCKS: u32 = 16;
 /// Blocks, of 64 invocations each, that fill a large GPU.
 const HARDWARE_BLOCKS: u32 = 4096;
 
@@ -134,7 +132,7 @@ impl Renderer for GpuRenderer {
     }
 
     fn busy_blocks(&self) -> u32 {
-        if self.device.description().kind == DeviceKind::Software { SOFTWARE_BLOCKS * cores() } else { HARDWARE_BLOCKS }
+        if self.device.description().kind == DeviceKind::Software { BLOCKS_A_THREAD * cores() } else { HARDWARE_BLOCKS }
     }
 
     fn begin_band(&mut self, rows: Range<u32>) -> Result<()> {
