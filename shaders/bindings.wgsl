@@ -20,6 +20,8 @@ override HAS_MESH: bool = true;
 override HAS_ANALYTIC: bool = true;
 // Any bounded shape, mists included, beside one mesh: rays look for instances first.
 override HAS_INSTANCES: bool = true;
+// So many meshes that neighbouring rays part among them.
+override HAS_MANY_MESHES: bool = true;
 override HAS_REFLECTION: bool = true;
 override HAS_REFRACTION: bool = true;
 override HAS_GLOSSY: bool = true;

@@ -26,7 +26,9 @@ pub const PARTS: &[Part<'static>] = parts![
     "types.wgsl"
     "bindings.wgsl"
     "memory/words/buffers.wgsl"
+    "memory/words/nodes.wgsl"
     "memory/words/stack.wgsl"
+    "memory/words/lane.wgsl"
     "tally.wgsl"
     "blocks.wgsl"
     "math/elementary.wgsl"
@@ -62,9 +64,11 @@ pub const PARTS: &[Part<'static>] = parts![
     "kernels/render.wgsl"
 ];
 
-/// Have the functions of those in [`WORDS`], and take their place.
-const PAIRS: &[Part<'static>] = parts!["memory/pairs/buffers.wgsl" "memory/pairs/stack.wgsl"];
 const WORDS: &str = "shaders/memory/words/";
+/// Have the functions of the files of their names in [`WORDS`], and take their place.
+const PAIRS: &[Part<'static>] = parts!["memory/pairs/buffers.wgsl" "memory/pairs/nodes.wgsl" "memory/pairs/stack.wgsl"];
+/// Likewise, together with [`PAIRS`].
+const SHARED: &[Part<'static>] = parts!["memory/shared/nodes.wgsl" "memory/shared/lane.wgsl"];
 
 /// How a kernel reaches what it reads and writes most: nodes, instances, triangles, and the stack of the traversal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,17 +77,28 @@ pub enum MemoryAccess {
     Words,
     /// By integers of 64 bits, where the device has them (`shaders/memory/pairs`).
     Pairs,
+    /// As by pairs, but what the lanes of a subgroup read together is loaded by one of them (`shaders/memory/shared`).
+    SharedPairs,
 }
 
 impl MemoryAccess {
+    /// From what runs everywhere to what asks most of a device.
+    pub const ALL: [MemoryAccess; 3] = [MemoryAccess::Words, MemoryAccess::Pairs, MemoryAccess::SharedPairs];
+
     /// [`PARTS`] with this access.
     pub fn parts(self) -> Vec<Part<'static>> {
-        match self {
-            MemoryAccess::Words => PARTS.to_vec(),
-            MemoryAccess::Pairs => {
-                PARTS.iter().filter(|part| !part.path.starts_with(WORDS)).chain(PAIRS).copied().collect()
-            }
-        }
+        let replacements = match self {
+            MemoryAccess::Words => Vec::new(),
+            MemoryAccess::Pairs => PAIRS.to_vec(),
+            MemoryAccess::SharedPairs => [PAIRS, SHARED].concat(),
+        };
+        let file_name = |part: &Part<'static>| part.path.rsplit('/').next();
+        let replaced = |part: &Part<'static>| {
+            let same_name = |other: &&Part<'static>| file_name(other) == file_name(part);
+            // The last one, as SHARED goes before PAIRS.
+            replacements.iter().rfind(same_name).filter(|_| part.path.starts_with(WORDS)).copied()
+        };
+        PARTS.iter().map(|part| replaced(part).unwrap_or(*part)).collect()
     }
 
     /// What the parts need beyond core WebGPU.
@@ -91,6 +106,7 @@ impl MemoryAccess {
         match self {
             MemoryAccess::Words => Capabilities::empty(),
             MemoryAccess::Pairs => Capabilities::SHADER_INT64,
+            MemoryAccess::SharedPairs => Capabilities::SHADER_INT64 | Capabilities::SUBGROUP,
         }
     }
 }

@@ -22,10 +22,10 @@ use std::sync::Arc;
 /// One ray a pixel; what it meets goes to the film word by word.
 const KERNEL: &str = "
 @compute @workgroup_size(64)
-fn trace(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let index = group.x * 64u + lane;
+fn trace(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
+    let index = group.x * 64u + lane.index;
     if (group.x >= dispatch.block_count || index >= frame.image_size.x * frame.image_size.y) { return; }
-    claim_stack(lane);
+    claim_lane(lane);
     let key = hash_combine(frame.seed, index);
     let a = sobol_2d(0u, hash_combine(key, 1u));
     let b = sobol_2d(0u, hash_combine(key, 2u));

@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3, Vec3};
 use gpu_trace::device::DeviceChoice;
 use gpu_trace::film::{Comparison, Film, compare_images};
 use gpu_trace::flatten::flatten;
-use gpu_trace::gpu::{Device, DeviceSelector, GpuOptions, GpuRenderer};
+use gpu_trace::gpu::{Device, DeviceKind, DeviceSelector, GpuOptions, GpuRenderer};
 use gpu_trace::render::{RenderOptions, Unattended, render};
 use gpu_trace::scene::{LightExtent, Material, Scene, Shape};
 use gpu_trace::script::{ScriptOptions, load_scene};
@@ -94,27 +94,32 @@ fn mixed_stage() -> Stage {
     stage
 }
 
-/// Software devices are given access by pairs; what other devices are given has to do the same.
+/// Software devices are given the last access that they support; what other devices are given has to do the same.
 #[test]
-fn access_by_words_and_by_pairs_gives_the_identical_film() {
+fn every_access_to_memory_gives_the_identical_film() {
     let device = Device::open(&DeviceSelector::Any).unwrap_or_else(|error| panic!("{error}"));
-    if !device.supports(MemoryAccess::Pairs) {
-        assert_eq!(device.memory_access(), MemoryAccess::Words, "the device has no integers of 64 bits");
-        return;
+    let supported = MemoryAccess::ALL.into_iter().filter(|&access| device.supports(access)).collect::<Vec<_>>();
+    assert!(supported.contains(&MemoryAccess::Words) && supported.contains(&device.memory_access()));
+    if device.description().kind == DeviceKind::Software {
+        assert_eq!(supported.last(), Some(&device.memory_access()));
     }
     for file in ["scenes/texture.lua", "scenes/waterfall.lua", "scenes/cylinder-torus.lua"] {
         let mut scene = reduced_scenes(Path::new(file)).swap_remove(0);
         scene.size = [64, 64 * scene.size[1] / scene.size[0]];
         let buffers = Arc::new(flatten(&scene).unwrap_or_else(|error| panic!("{error}")));
-        let [words, pairs] = [MemoryAccess::Words, MemoryAccess::Pairs].map(|access| {
+        let outcome = |access: MemoryAccess| {
             let program = Program::renderer(access, &[]).unwrap_or_else(|error| panic!("{error}"));
             let options = GpuOptions { checked: false };
             let mut renderer = GpuRenderer::with_program(device.clone(), options, program, RENDER_ENTRY_POINT);
             let options = RenderOptions::whole(&buffers);
             render(buffers.clone(), &mut renderer, &options, &mut Unattended).unwrap_or_else(|error| panic!("{error}"))
-        });
+        };
+        let words = outcome(MemoryAccess::Words);
         assert!(words.film.pixels.iter().any(|pixel| pixel[0] > 0), "{file}: the picture is black");
-        assert!(words.film == pairs.film && words.tally == pairs.tally, "{file}");
+        for &access in supported.iter().filter(|&&access| access != MemoryAccess::Words) {
+            let other = outcome(access);
+            assert!(words.film == other.film && words.tally == other.tally, "{file} {access:?}");
+        }
     }
 }
 

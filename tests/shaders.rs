@@ -45,15 +45,14 @@ fn files_under(folder: &Path, found: &mut BTreeSet<String>) {
 fn every_file_under_shaders_is_linked() {
     let mut on_disk = BTreeSet::new();
     files_under(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), &mut on_disk);
-    let parts = MemoryAccess::Pairs.parts();
-    let linked: BTreeSet<String> =
-        PARTS.iter().chain(&parts).chain([&LOOP_PROBE]).map(|part| part.path.to_owned()).collect();
+    let parts = MemoryAccess::ALL.map(MemoryAccess::parts).concat();
+    let linked: BTreeSet<String> = parts.iter().chain([&LOOP_PROBE]).map(|part| part.path.to_owned()).collect();
     assert_eq!(on_disk, linked);
 }
 
 #[test]
 fn the_program_validates_with_every_feature_alone_on_and_alone_off() {
-    for access in [MemoryAccess::Words, MemoryAccess::Pairs] {
+    for access in MemoryAccess::ALL {
         let program = Program::renderer(access, &[]).unwrap();
         let names = override_names(&program);
         assert!(names.len() >= 12, "only {} overrides", names.len());
@@ -70,12 +69,14 @@ fn the_program_validates_with_every_feature_alone_on_and_alone_off() {
     }
 }
 
-/// Devices without integers of 64 bits can run what they are given.
+/// Devices without integers of 64 bits or subgroups can run what they are given.
 #[test]
-fn only_access_by_pairs_needs_more_than_core_webgpu() {
+fn only_access_by_words_keeps_to_core_webgpu() {
     Program::link(&MemoryAccess::Words.parts()).unwrap();
-    let message = shader_error(&MemoryAccess::Pairs.parts());
-    assert!(message.contains("SHADER_INT64"), "{message}");
+    for access in [MemoryAccess::Pairs, MemoryAccess::SharedPairs] {
+        let message = shader_error(&access.parts());
+        assert!(message.contains("SHADER_INT64"), "{message}");
+    }
 }
 
 #[test]

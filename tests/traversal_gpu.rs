@@ -17,14 +17,14 @@ use std::sync::Arc;
 /// Reads rays from `texels`, eight words each, and writes two film pixels for each.
 const TRACE_RAYS: &str = "
 @compute @workgroup_size(64)
-fn trace_rays(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn trace_rays(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
     if (group.x >= dispatch.block_count) { return; }
-    let index = group.x * 64u + lane;
+    let index = group.x * 64u + lane.index;
     if (2u * index + 1u >= frame.image_size.x * dispatch.band_rows) { return; }
     let origin = vec3<f32>(ray_word(index, 0u), ray_word(index, 1u), ray_word(index, 2u));
     let direction = vec3<f32>(ray_word(index, 3u), ray_word(index, 4u), ray_word(index, 5u));
     let t_max = ray_word(index, 6u);
-    claim_stack(lane);
+    claim_lane(lane);
     tally = Tally(0u, vec4<u32>(0u));
     let occluded = select(0u, 1u, scene_occluded(origin, direction, t_max));
     let hit = scene_intersect(origin, direction, t_max);

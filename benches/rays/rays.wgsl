@@ -21,12 +21,12 @@ fn uniform_number() -> f32 {
 }
 
 @compute @workgroup_size(64)
-fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn walk(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
     let place = place_of(group.x);
     if (place >= dispatch.first_block + dispatch.block_count) {
         return;
     }
-    claim_stack(lane);
+    claim_lane(lane);
     tally = Tally(0u, vec4<u32>(0u));
 
     var pixel: vec2<u32>;
@@ -38,7 +38,7 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     while (path < BLOCKS * SAMPLES) {
         if (bounce == 0u) {
             if (path % SAMPLES == 0u) {
-                pixel = block_at(place * BLOCKS + path / SAMPLES) * BLOCK_EDGE + pixel_in_block(lane);
+                pixel = block_at(place * BLOCKS + path / SAMPLES) * BLOCK_EDGE + pixel_in_block(lane.index);
                 random_state = pcg(pixel.x + pixel.y * frame.image_size.x);
             }
             let x = (f32(pixel.x) + uniform_number()) / f32(frame.image_size.x) * 2.0 - 1.0;

@@ -1,18 +1,18 @@
 // One pass of some camera samples for each pixel of a run of 8 x 8 blocks.
 
 @compute @workgroup_size(64)
-fn render(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn render(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
     let place = place_of(group.x);
     if (place >= dispatch.first_block + dispatch.block_count) {
         return;
     }
-    let in_band = block_at(place) * BLOCK_EDGE + pixel_in_block(lane);
+    let in_band = block_at(place) * BLOCK_EDGE + pixel_in_block(lane.index);
     if (in_band.x >= frame.image_size.x || in_band.y >= dispatch.band_rows) {
         return;
     }
     let pixel = in_band + vec2<u32>(0u, dispatch.band_row);
 
-    claim_stack(lane);
+    claim_lane(lane);
     tally = Tally(0u, vec4<u32>(0u));
     let film_index = in_band.y * frame.image_size.x + in_band.x;
     var sum = film[film_index];

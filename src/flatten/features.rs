@@ -5,6 +5,8 @@ use crate::layout;
 
 /// Up to so many lights are told apart by constants: as many as `light_at` in `shaders/shading/light.wgsl` lists.
 const FEW_LIGHTS: usize = 4;
+/// Among up to so many instances of meshes, neighbouring rays mostly visit the same nodes.
+const FEW_MESHES: usize = 64;
 
 /// One field for each `override` constant of `shaders/bindings.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -20,6 +22,8 @@ pub struct FeatureSet {
     pub analytic: bool,
     /// Any bounded shape, mists included, beside one mesh.
     pub instances: bool,
+    /// So many instances of meshes that neighbouring rays part among them.
+    pub many_meshes: bool,
     /// A material that reflects, be it by total internal reflection.
     pub reflection: bool,
     /// A material with a refractive index.
@@ -55,6 +59,7 @@ impl FeatureSet {
         mesh: false,
         analytic: false,
         instances: false,
+        many_meshes: false,
         reflection: false,
         refraction: false,
         glossy: false,
@@ -78,6 +83,7 @@ impl FeatureSet {
         mesh: true,
         analytic: true,
         instances: true,
+        many_meshes: true,
         reflection: true,
         refraction: true,
         glossy: true,
@@ -112,6 +118,7 @@ impl FeatureSet {
             mesh: has(layout::SHAPE_MESH),
             analytic: bounded().any(|instance| instance.shape != layout::SHAPE_MESH),
             instances: bounded().any(|instance| instance.shape != layout::SHAPE_MESH) || bounded().count() > 1,
+            many_meshes: bounded().filter(|instance| instance.shape == layout::SHAPE_MESH).count() > FEW_MESHES,
             reflection: materials.iter().any(|material| material.reflection != 0.0 || material.ior != 0.0),
             refraction: materials.iter().any(|material| material.ior != 0.0),
             glossy: materials.iter().any(|material| material.reflection != 0.0 && material.glossy != 0.0),
@@ -143,6 +150,7 @@ impl FeatureSet {
             ("HAS_MESH", self.mesh),
             ("HAS_ANALYTIC", self.analytic),
             ("HAS_INSTANCES", self.instances),
+            ("HAS_MANY_MESHES", self.many_meshes),
             ("HAS_REFLECTION", self.reflection),
             ("HAS_REFRACTION", self.refraction),
             ("HAS_GLOSSY", self.glossy),

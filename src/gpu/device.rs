@@ -274,16 +274,18 @@ fn open_adapter(description: &Description, adapter: &wgpu::Adapter, storage_bind
     if given < needed {
         return Err(Error::Device(format!("{name} gives a kernel {given} storage buffers; {needed} are needed")));
     }
-    let features = adapter.features() & features_for(MemoryAccess::Pairs);
+    let supported =
+        MemoryAccess::ALL.into_iter().rev().find(|&access| adapter.features().contains(features_for(access)));
+    let best_access = supported.unwrap_or(MemoryAccess::Words);
     let memory_access = match description.kind {
-        DeviceKind::Software if features == features_for(MemoryAccess::Pairs) => MemoryAccess::Pairs,
-        // A GPU loads 16 bytes at once as it is.
+        DeviceKind::Software => best_access,
+        // A GPU loads 16 bytes at once as it is, and once for all lanes that read the same.
         _ => MemoryAccess::Words,
     };
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("gpu-trace"),
         required_limits: limits,
-        required_features: features,
+        required_features: features_for(best_access),
         // A renderer makes few and large buffers.
         memory_hints: wgpu::MemoryHints::MemoryUsage,
         ..Default::default()
@@ -315,6 +317,7 @@ fn features_for(access: MemoryAccess) -> wgpu::Features {
     match access {
         MemoryAccess::Words => wgpu::Features::empty(),
         MemoryAccess::Pairs => wgpu::Features::SHADER_INT64,
+        MemoryAccess::SharedPairs => wgpu::Features::SHADER_INT64 | wgpu::Features::SUBGROUP,
     }
 }
 

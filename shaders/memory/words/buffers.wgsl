@@ -1,10 +1,8 @@
-// The buffers that rays read most, word by word, as types.wgsl declares them. The files in memory/pairs have the same
-// functions as those in memory/words; `MemoryAccess` in src/shader.rs says which of the two a device is given.
+// The buffers that rays read most, word by word, as types.wgsl declares them. A file of this name in memory/pairs or
+// memory/shared has the same functions; `MemoryAccess` in src/shader.rs says which of them a device is given.
 @group(0) @binding(2) var<storage, read> nodes: array<Node>;
 @group(0) @binding(3) var<storage, read> instances: array<Instance>;
 @group(0) @binding(4) var<storage, read> triangles: array<Triangle>;
-
-fn node_at(index: u32) -> Node { return nodes[index]; }
 
 fn object_from_world_of(instance: u32) -> mat3x4<f32> { return instances[instance].object_from_world; }
 fn shape_of(instance: u32) -> u32 { return instances[instance].shape; }

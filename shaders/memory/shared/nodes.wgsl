@@ -1,0 +1,30 @@
+// The nodes of the hierarchies. Where neighbouring rays keep together, the lanes of a subgroup mostly visit the same one:
+// the first of them loads it, and the others that are there take it over.
+fn node_at(index: u32) -> Node {
+    if HAS_MANY_MESHES { return load_node(index); }
+    let leader = select(subgroup_lane, subgroupBroadcastFirst(subgroup_lane), subgroupBroadcastFirst(index) == index);
+    var node: Node;
+    if leader == subgroup_lane { node = load_node(index); }
+    return Node(
+        subgroupShuffle(node.grid, leader),
+        subgroupShuffle(node.children, leader),
+        subgroupShuffle(node.x, leader),
+        subgroupShuffle(node.y, leader),
+        subgroupShuffle(node.z, leader),
+        vec4<u32>(0u),
+    );
+}
+
+fn load_node(index: u32) -> Node {
+    let first = nodes[index][0];
+    let second = nodes[index][1];
+    let third = nodes[index][2];
+    return Node(
+        words_of(first.xy),
+        words_of(first.zw),
+        words_of(second.xy),
+        words_of(second.zw),
+        words_of(third.xy),
+        vec4<u32>(0u),
+    );
+}

@@ -1,0 +1,2 @@
+// The nodes of the hierarchies, word by word.
+fn node_at(index: u32) -> Node { return nodes[index]; }
