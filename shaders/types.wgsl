@@ -178,7 +178,8 @@ struct FilmPixel {
 // What the kernel reports: STATUS_* bits, and rays traced, in RAY_KINDS * RAY_SLOTS counters.
 struct Status {
     flags: atomic<u32>,
-    pad0: u32,
+    // How often pixels of the dispatch were taken, see memory/shared/work.wgsl.
+    taken: atomic<u32>,
     pad1: u32,
     pad2: u32,
     rays: array<atomic<u32>, 256>,

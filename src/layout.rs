@@ -152,7 +152,7 @@ pub struct FilmPixel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct Status {
     pub flags: u32,
-    pub pad0: u32,
+    pub taken: u32,
     pub pad1: u32,
     pub pad2: u32,
     pub rays: [u32; 256],

@@ -29,6 +29,7 @@ pub const PARTS: &[Part<'static>] = parts![
     "memory/words/nodes.wgsl"
     "memory/words/stack.wgsl"
     "memory/words/lane.wgsl"
+    "memory/words/work.wgsl"
     "tally.wgsl"
     "blocks.wgsl"
     "math/elementary.wgsl"
@@ -68,7 +69,7 @@ const WORDS: &str = "shaders/memory/words/";
 /// Have the functions of the files of their names in [`WORDS`], and take their place.
 const PAIRS: &[Part<'static>] = parts!["memory/pairs/buffers.wgsl" "memory/pairs/nodes.wgsl" "memory/pairs/stack.wgsl"];
 /// Likewise, together with [`PAIRS`].
-const SHARED: &[Part<'static>] = parts!["memory/shared/nodes.wgsl" "memory/shared/lane.wgsl"];
+const SHARED: &[Part<'static>] = parts!["memory/shared/nodes.wgsl" "memory/shared/lane.wgsl" "memory/shared/work.wgsl"];
 
 /// How a kernel reaches what it reads and writes most: nodes, instances, triangles, and the stack of the traversal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -118,7 +118,7 @@ fn rust_structs() -> Vec<Struct> {
         }),
         rust_struct!(Light { position, kind, colour, radius, falloff, pad0, u, pad1, v, pad2 }),
         rust_struct!(FilmPixel { low, high }),
-        rust_struct!(Status { flags, pad0, pad1, pad2, rays }),
+        rust_struct!(Status { flags, taken, pad1, pad2, rays }),
     ]
 }
 

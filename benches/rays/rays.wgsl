@@ -22,13 +22,23 @@ fn uniform_number() -> f32 {
 
 @compute @workgroup_size(64)
 fn walk(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
-    let place = place_of(group.x);
-    if (place >= dispatch.first_block + dispatch.block_count) {
-        return;
-    }
     claim_lane(lane);
     tally = Tally(0u, vec4<u32>(0u));
+    for (var turn = 0u; ; turn++) {
+        let work = take_work(group.x, turn, lane);
+        if (work.x >= dispatch.first_block + dispatch.block_count) {
+            break;
+        }
+        walk_paths(work);
+    }
+    atomicAdd(&status.rays[group.x % RAY_SLOTS], tally.rays[0]);
+    if (tally.flags != 0u) {
+        atomicOr(&status.flags, tally.flags);
+    }
+}
 
+// All paths of a pixel in each of BLOCKS blocks.
+fn walk_paths(work: vec2<u32>) {
     var pixel: vec2<u32>;
     var origin: vec3<f32>;
     var direction: vec3<f32>;
@@ -38,7 +48,7 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
     while (path < BLOCKS * SAMPLES) {
         if (bounce == 0u) {
             if (path % SAMPLES == 0u) {
-                pixel = block_at(place * BLOCKS + path / SAMPLES) * BLOCK_EDGE + pixel_in_block(lane.index);
+                pixel = block_at(work.x * BLOCKS + path / SAMPLES) * BLOCK_EDGE + pixel_in_block(work.y);
                 random_state = pcg(pixel.x + pixel.y * frame.image_size.x);
             }
             let x = (f32(pixel.x) + uniform_number()) / f32(frame.image_size.x) * 2.0 - 1.0;
@@ -66,9 +76,5 @@ fn walk(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
             path++;
             bounce = 0u;
         }
-    }
-    atomicAdd(&status.rays[place % RAY_SLOTS], tally.rays[0]);
-    if (tally.flags != 0u) {
-        atomicOr(&status.flags, tally.flags);
     }
 }

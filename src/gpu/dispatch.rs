@@ -11,6 +11,7 @@ use crate::layout::{self, Dispatch, FilmPixel, Frame, Status};
 use crate::renderer::{PrepareCounts, Tally};
 use crate::{Error, Result};
 use glam::UVec2;
+use std::mem::offset_of;
 use std::num::NonZeroU64;
 use std::ops::Range;
 use std::sync::Arc;
@@ -195,13 +196,14 @@ impl Session {
 
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         encoder.clear_buffer(&self.status, 0, None);
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&self.pipeline.pipeline);
         for (index, (_, workgroups)) in dispatches.iter().enumerate() {
+            // Each dispatch is taken from its beginning.
+            encoder.clear_buffer(&self.status, offset_of!(Status, taken) as u64, Some(size_of::<u32>() as u64));
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(&self.pipeline.pipeline);
             pass.set_bind_group(0, &self.bind_group, &[index as u32 * SLOT as u32]);
             pass.dispatch_workgroups(*workgroups, 1, 1);
         }
-        drop(pass);
         let status_size = self.status.size();
         encoder.copy_buffer_to_buffer(&self.status, 0, &self.status_staging, 0, status_size);
         self.device.queue.submit([encoder.finish()]);

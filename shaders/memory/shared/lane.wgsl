@@ -4,6 +4,8 @@ struct Lane {
     @builtin(local_invocation_index) index: u32,
     // Its number in the subgroup, whose lanes run together.
     @builtin(subgroup_invocation_id) in_subgroup: u32,
+    // A power of two, at most the size of a workgroup.
+    @builtin(subgroup_size) subgroup_size: u32,
 };
 
 var<private> subgroup_lane: u32;

@@ -1,0 +1,15 @@
+// Which pixels an invocation renders: lavapipe gives each of its threads the same number of workgroups, and waits for the
+// last. Here a subgroup takes the next pixels that nobody has taken yet, again and again, so that all threads are busy to
+// the end; workgroups that begin later find nothing left.
+
+// The place of a block, one behind the last when nothing is left to do, and the number of a pixel in it. Each kernel
+// asks until nothing is left, the first time with turn 0.
+fn take_work(_group: u32, _turn: u32, lane: Lane) -> vec2<u32> {
+    var taken = 0u;
+    if lane.in_subgroup == subgroupBroadcastFirst(lane.in_subgroup) {
+        taken = atomicAdd(&status.taken, 1u);
+    }
+    let pixel = subgroupBroadcastFirst(taken) * lane.subgroup_size;
+    let pixels = BLOCK_EDGE * BLOCK_EDGE;
+    return vec2<u32>(dispatch.first_block + pixel / pixels, pixel % pixels + lane.in_subgroup);
+}

@@ -1,0 +1,7 @@
+// Which pixels an invocation renders: one, in the block that its workgroup takes.
+
+// The place of a block, one behind the last when nothing is left to do, and the number of a pixel in it. Each kernel
+// asks until nothing is left, the first time with turn 0.
+fn take_work(group: u32, turn: u32, lane: Lane) -> vec2<u32> {
+    return vec2<u32>(select(dispatch.first_block + dispatch.block_count, place_of(group), turn == 0u), lane.index);
+}
