@@ -73,6 +73,8 @@ struct Dispatch {
     tile_stride: u32,
     // Processors that take contiguous portions of the workgroups, see `place_of` in blocks.wgsl; at least 1.
     portions: u32,
+    // Whether subgroups take pixels as they come, where the device has them: 1 or 0, see memory/shared/work.wgsl.
+    takes_work: u32,
     // Turns of the loop that every invocation ends with; fewer made means that the driver cut loops short.
     canary_turns: u32,
 };

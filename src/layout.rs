@@ -56,6 +56,7 @@ pub struct Dispatch {
     pub block_count: u32,
     pub tile_stride: u32,
     pub portions: u32,
+    pub takes_work: u32,
     pub canary_turns: u32,
 }
 

@@ -197,9 +197,12 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Renders a band, with fewer samples a dispatch, then with more passes of fewer rays each where a bound is met.
+    /// Renders a band; where a bound is met, with fewer pixels an invocation, then with fewer samples a dispatch, then
+    /// with more passes of fewer rays each.
     fn render_band(&mut self, rows: Range<u32>) -> Result<()> {
+        let rays_before = self.tally.rays;
         loop {
+            self.tally.rays = rays_before;
             self.frame = self.plan.applied_to(self.frame);
             self.renderer.begin_band(rows.clone())?;
             let flags = self.render_passes(&rows)?;
@@ -214,6 +217,11 @@ impl Job<'_> {
             }
             if flags & STATUS_LOOP_BOUND == 0 {
                 return Ok(());
+            }
+            if self.renderer.takes_work() {
+                self.renderer.stop_taking_work();
+                log::info!("a loop bound was met: rendering again with one pixel an invocation");
+                continue;
             }
             if self.most_samples > 1 {
                 self.most_samples = 1;
@@ -242,6 +250,7 @@ impl Job<'_> {
         let band_share = f64::from(band_rows) * f64::from(self.frame.image_size.x) / self.pixels_total as f64;
         let done_before = self.pixels_before as f64 / self.pixels_total as f64 * samples.len() as f64;
         let portions = self.renderer.portions().max(1);
+        let takes_work = u32::from(self.renderer.takes_work());
         let mut dispatches = Vec::new();
         let mut sweep = Sweep { samples: samples.start..samples.start, pass: 0, block: 0 };
         let mut done = 0;
@@ -268,6 +277,7 @@ impl Job<'_> {
                     block_count: count as u32,
                     tile_stride,
                     portions,
+                    takes_work,
                     canary_turns: CANARY_TURNS,
                 });
                 taken += count * sample_count;

@@ -65,6 +65,15 @@ pub trait Renderer {
         1
     }
 
+    /// Whether subgroups take the pixels of a dispatch as they come, which keeps all processors busy to its end, but has
+    /// an invocation make more turns of its loops.
+    fn takes_work(&self) -> bool {
+        false
+    }
+
+    /// From now on, leaves each invocation its one pixel.
+    fn stop_taking_work(&mut self) {}
+
     /// Blocks that a dispatch needs to keep all processors busy.
     fn busy_blocks(&self) -> u32 {
         1

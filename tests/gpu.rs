@@ -91,6 +91,7 @@ fn runs(rows: std::ops::Range<u32>, run: u32, stride: impl Fn(u32) -> u32, sampl
             block_count,
             tile_stride: stride(blocks / TILE_BLOCKS),
             portions: 1 + run % 5,
+            takes_work: 0,
             canary_turns: 0,
         }
     };
@@ -203,6 +204,7 @@ fn every_dispatch_sees_its_own_parameters_and_the_frame_of_its_submit() {
         first_block: i % 13,
         block_count: 1 + i % 5,
         portions: 1,
+        takes_work: 0,
         tile_stride: 7,
         canary_turns: 1000 + i,
     };

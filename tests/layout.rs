@@ -95,6 +95,7 @@ fn rust_structs() -> Vec<Struct> {
             block_count,
             tile_stride,
             portions,
+            takes_work,
             canary_turns,
         }),
         rust_struct!(Node { grid, children, x, y, z, unused }),

@@ -139,6 +139,7 @@ impl Gpu {
                 block_count,
                 tile_stride: order.stride(),
                 portions: self.renderer.portions(),
+                takes_work: u32::from(self.renderer.takes_work()),
                 ..Dispatch::default()
             };
             let tally = self.renderer.submit(&self.buffers.frame, &[dispatch])?;

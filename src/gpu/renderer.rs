@@ -7,7 +7,7 @@ use crate::film::Film;
 use crate::flatten::{FeatureSet, SceneBuffers};
 use crate::layout::{Dispatch, FilmPixel, Frame};
 use crate::renderer::{BLOCKS_A_THREAD, PrepareCounts, Renderer, Tally};
-use crate::shader::{Program, RENDER_ENTRY_POINT};
+use crate::shader::{MemoryAccess, Program, RENDER_ENTRY_POINT};
 use crate::{Error, Result};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -34,6 +34,7 @@ pub struct GpuRenderer {
     /// By what they are specialised to; they differ in nothing else.
     pipelines: HashMap<FeatureSet, Pipeline>,
     session: Option<Session>,
+    takes_work: bool,
     warmup_seconds: f64,
     counts: PrepareCounts,
 }
@@ -49,10 +50,11 @@ impl GpuRenderer {
     }
 
     /// A renderer with another kernel, which has to use the bindings of `shaders/bindings.wgsl` and workgroups of 64
-    /// in one dimension, to do nothing where `workgroup_id.x >= dispatch.block_count`, and to call `claim_stack` before
+    /// in one dimension, to do nothing where `workgroup_id.x >= dispatch.block_count`, and to call `claim_lane` before
     /// it traces rays.
     pub fn with_program(device: Device, options: GpuOptions, program: Program, entry_point: &str) -> Self {
         let entry_point = entry_point.to_owned();
+        let takes_work = device.memory_access() == MemoryAccess::SharedPairs;
         GpuRenderer {
             device,
             options,
@@ -60,6 +62,7 @@ impl GpuRenderer {
             entry_point,
             pipelines: HashMap::new(),
             session: None,
+            takes_work,
             warmup_seconds: 0.0,
             counts: PrepareCounts::default(),
         }
@@ -129,6 +132,14 @@ impl Renderer for GpuRenderer {
 
     fn portions(&self) -> u32 {
         if self.device.description().kind == DeviceKind::Software { cores() } else { 1 }
+    }
+
+    fn takes_work(&self) -> bool {
+        self.takes_work
+    }
+
+    fn stop_taking_work(&mut self) {
+        self.takes_work = false;
     }
 
     fn busy_blocks(&self) -> u32 {
