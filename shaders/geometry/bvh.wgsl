@@ -1,8 +1,8 @@
 // Rays against the whole scene: a compressed wide hierarchy over the instances, whose leaves lead to one within each
 // mesh (Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017).
-// A group is (base index, members). Of nodes, the members are up to eight digits of four bits, CHILD + the number of the
-// child, the nearest lowest, in place of the paper's mask in the order of the ray's octant: that order visits a quarter
-// more nodes of a forest. Of instances of meshes, they are bits from FIRST_MESH upwards, the last to be entered first.
+// A group is (base index, members): up to eight digits of four bits, CHILD + the number of the child, the nearest lowest,
+// in place of the paper's mask in the order of the ray's octant: that order visits a quarter more nodes of a forest.
+// The meshes that a node leads to are entered before its inner children, one after another, and wait beside the stack.
 // Every turn visits one node, be it the root of a mesh that is just entered, and intersects the primitives that it leads
 // to: lanes that wait for one another all wait for the same thing.
 
@@ -10,9 +10,8 @@
 const TRAVERSAL_STACK: u32 = 32u;
 // Nodes that one ray may visit, over both levels.
 const TRAVERSAL_TURNS: u32 = 65536u;
-// A member of a group of nodes; members of other groups don't have this bit.
+// What every member of a group has.
 const CHILD: u32 = 8u;
-const FIRST_MESH: u32 = 16u;
 // Sorts behind every child that is met, and is no member.
 const UNMET: i32 = 0x7ffffff0;
 // 8 * 2^-24: relative error of a box's plane in quantisation, of the distance to it, and of the ray's shear.
@@ -70,8 +69,12 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
     var ray_origin = origin;
     let world_inverse = inverse_direction(direction);
     var inverse = world_inverse;
-    // The group in hand: nodes, or instances of meshes. The root, to begin with.
+    // The group in hand, of nodes: the root, to begin with.
     var group = vec2<u32>(select(0u, frame.mist_root, in_mist), CHILD);
+    // The meshes that the ray enters before it goes on with the group: a bit each, the last one first, and the instance
+    // of bit 0.
+    var meshes = 0u;
+    var first_mesh = 0u;
     if !HAS_INSTANCES {
         // In the only mesh from the beginning to the end.
         instance = frame.plane_count;
@@ -84,14 +87,16 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         inverse = inverse_direction(object_direction);
     } else if HAS_MESH && count == 1u {
         let only = frame.plane_count + select(0u, frame.bounded_count, in_mist);
-        group = select(group, vec2<u32>(only, FIRST_MESH), shape_of(only) == SHAPE_MESH);
+        let is_mesh = shape_of(only) == SHAPE_MESH;
+        group.y = select(group.y, 0u, is_mesh);
+        meshes = select(0u, 1u, is_mesh);
+        first_mesh = only;
     }
 
     var turn = 0u;
     for (; ; turn++) {
-        let is_mesh = HAS_MESH && HAS_INSTANCES && (group.y & CHILD) == 0u;
-        let bit = firstLeadingBit(group.y);
-        let rest = select(group.y >> 4u, group.y & ~(1u << bit), is_mesh);
+        let is_mesh = HAS_MESH && HAS_INSTANCES && meshes != 0u && return_height == NONE;
+        let rest = select(group.y >> 4u, group.y, is_mesh);
         // Written whether or not anything is left: what only some lanes do costs lavapipe a branch for each of them.
         let has_room = height < TRAVERSAL_STACK;
         stack_set(min(height, TRAVERSAL_STACK - 1u), vec2<u32>(group.x, rest));
@@ -101,8 +106,9 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         var child = group.x + (group.y & 7u);
         var limit = nearest;
         if is_mesh {
-            // FIRST_MESH is bit 4.
-            instance = group.x + bit - 4u;
+            let place = firstLeadingBit(meshes);
+            meshes &= ~(1u << place);
+            instance = first_mesh + place;
             child = root_of(instance);
             let object_from_world = object_from_world_of(instance);
             let object_direction = transform_vector(object_from_world, direction);
@@ -119,8 +125,13 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
         let met = node_intersect(node, ray_origin, inverse, limit);
         group = vec2<u32>(node.children.x, met.children);
         // Instances of meshes come first among a node's primitives.
-        let meshes = select(0u, met.primitives & ((1u << (node.grid.w >> 28u)) - 1u), HAS_INSTANCES);
-        var primitives_left = met.primitives ^ meshes;
+        var primitives_left = met.primitives;
+        if HAS_MESH && HAS_INSTANCES {
+            let met_meshes = met.primitives & ((1u << (node.grid.w >> 28u)) - 1u);
+            primitives_left ^= met_meshes;
+            first_mesh = select(first_mesh, node.children.y, met_meshes != 0u);
+            meshes |= met_meshes;
+        }
         // All of them, even where any hit will do: a loop that waits for what the last one has brought is slower than
         // one that goes on.
         while primitives_left != 0u {
@@ -150,28 +161,21 @@ fn traverse(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool, 
             }
         }
 
-        if HAS_MESH && HAS_INSTANCES && meshes != 0u {
-            // The meshes first, then the node's inner children.
-            let has_inner = group.y != 0u;
-            let has_space = height < TRAVERSAL_STACK;
-            stack_set(min(height, TRAVERSAL_STACK - 1u), group);
-            height += select(0u, 1u, has_inner && has_space);
-            tally.flags |= select(0u, STATUS_STACK_FULL, has_inner && !has_space);
-            group = vec2<u32>(node.children.y, meshes * FIRST_MESH);
-        }
         // Back among the instances, and the group that was put aside last: read whether or not it is needed, as above.
         let top = stack_get(max(height, 1u) - 1u);
         let is_done = group.y == 0u;
         is_over = any_hit && hit.t > 0.0;
-        if is_over || (is_done && height == 0u) || turn == TRAVERSAL_TURNS { break; }
+        if is_over || (is_done && height == 0u && meshes == 0u) || turn == TRAVERSAL_TURNS { break; }
+        var pops = is_done;
         if HAS_MESH && HAS_INSTANCES {
             let leaves = is_done && height == return_height;
             return_height = select(return_height, NONE, leaves);
             ray_origin = select(ray_origin, origin, leaves);
             inverse = select(inverse, world_inverse, leaves);
+            pops = is_done && (meshes == 0u || return_height != NONE);
         }
-        height -= select(0u, 1u, is_done);
-        group = select(group, top, is_done);
+        height -= select(0u, 1u, pops);
+        group = select(group, top, pops);
     }
     tally.flags |= select(0u, STATUS_LOOP_BOUND, turn == TRAVERSAL_TURNS);
     return hit;

@@ -17,7 +17,6 @@ use glam::{UVec2, UVec4, Vec3};
 const TRAVERSAL_STACK: usize = crate::flatten::TRAVERSAL_STACK as usize;
 const TRAVERSAL_TURNS: u32 = 65_536;
 const CHILD: u32 = 8;
-const FIRST_MESH: u32 = 16;
 const BOX_ERROR: f32 = 4.768_371_6e-7;
 const MIN_DIRECTION: f32 = 8.881_784e-16;
 
@@ -103,10 +102,16 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
     let mut mesh: Option<(u32, TriangleRay, usize)> = None;
     let mut ray_origin = origin;
     let mut inverse = inverse_direction(direction);
-    // The group in hand: nodes, or instances of meshes. The root, to begin with.
+    // The group in hand, of nodes: the root, to begin with.
     let mut group = UVec2::new(root, CHILD);
+    // The meshes that the ray enters before it goes on with the group: a bit each, the last one first, and the instance
+    // of bit 0.
+    let mut meshes = 0;
+    let mut first_mesh = 0;
     if count == 1 && scene.instances[first as usize].shape == SHAPE_MESH {
-        group = UVec2::new(first, FIRST_MESH);
+        group.y = 0;
+        meshes = 1;
+        first_mesh = first;
     }
 
     for turn in 0.. {
@@ -114,16 +119,16 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             tally.flags |= STATUS_LOOP_BOUND;
             break;
         }
-        let is_mesh = group.y & CHILD == 0;
-        let bit = first_leading_bit(group.y);
-        let rest = if is_mesh { group.y & !(1 << bit) } else { group.y >> 4 };
+        let is_mesh = meshes != 0 && mesh.is_none();
+        let rest = if is_mesh { group.y } else { group.y >> 4 };
         if rest != 0 {
             stack.push(UVec2::new(group.x, rest), tally);
         }
         let mut limit = nearest;
         let child = if is_mesh {
-            // FIRST_MESH is bit 4.
-            let index = group.x + bit - 4;
+            let place = first_leading_bit(meshes);
+            meshes &= !(1 << place);
+            let index = first_mesh + place;
             let instance = &scene.instances[index as usize];
             let object_direction = transform_vector(&instance.object_from_world, direction);
             ray_origin = transform_point(&instance.object_from_world, origin);
@@ -141,8 +146,12 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
         let met = node_intersect(node, ray_origin, inverse, limit);
         group = UVec2::new(node.children.x, met.children);
         // Instances of meshes come first among a node's primitives.
-        let meshes = met.primitives & ((1 << (node.grid.w >> 28)) - 1);
-        let mut primitives_left = met.primitives ^ meshes;
+        let met_meshes = met.primitives & ((1 << (node.grid.w >> 28)) - 1);
+        let mut primitives_left = met.primitives ^ met_meshes;
+        if met_meshes != 0 {
+            first_mesh = node.children.y;
+            meshes = met_meshes;
+        }
         while primitives_left != 0 {
             let place = first_leading_bit(primitives_left);
             primitives_left &= !(1 << place);
@@ -175,22 +184,17 @@ fn traverse<const ANY_HIT: bool, const MASK: u32>(
             }
         }
 
-        if meshes != 0 {
-            // The meshes first, then the node's inner children.
-            if group.y != 0 {
-                stack.push(group, tally);
-            }
-            group = UVec2::new(node.children.y, meshes * FIRST_MESH);
-        }
         if group.y == 0 {
             if mesh.as_ref().is_some_and(|(_, _, return_height)| stack.height == *return_height) {
                 mesh = None;
                 ray_origin = origin;
                 inverse = inverse_direction(direction);
             }
-            match stack.pop() {
-                Some(top) => group = top,
-                None => break,
+            if meshes == 0 || mesh.is_some() {
+                match stack.pop() {
+                    Some(top) => group = top,
+                    None => break,
+                }
             }
         }
     }
