@@ -10,9 +10,9 @@ use obvhs::cwbvh::node::CwBvhNode;
 use std::ops::Range;
 
 /// Groups that a ray can put aside; `shaders/geometry/bvh.wgsl` has the same constant. Where it enters a mesh it puts
-/// two aside, and `build` keeps each level of the hierarchy within half of the rest.
+/// one aside, and `build` keeps each level of the hierarchy within half of the rest.
 pub const TRAVERSAL_STACK: u32 = 32;
-const MAX_STACK: u32 = (TRAVERSAL_STACK - 2) / 2;
+const MAX_STACK: u32 = (TRAVERSAL_STACK - 1) / 2;
 
 /// Triangles in a leaf, the most that the nodes can say, and in all leaves of a node.
 const MAX_TRIANGLES: u32 = 3;
