@@ -11,6 +11,21 @@ fn words_of(pairs: vec2<u64>) -> vec4<u32> {
 }
 fn numbers_of(pairs: vec2<u64>) -> vec4<f32> { return bitcast<vec4<f32>>(words_of(pairs)); }
 
+// For `node_at`.
+fn load_node(index: u32) -> Node {
+    let first = nodes[index][0];
+    let second = nodes[index][1];
+    let third = nodes[index][2];
+    return Node(
+        words_of(first.xy),
+        words_of(first.zw),
+        words_of(second.xy),
+        words_of(second.zw),
+        words_of(third.xy),
+        vec4<u32>(0u),
+    );
+}
+
 fn object_from_world_of(instance: u32) -> mat3x4<f32> {
     let first = instances[instance][0];
     let second = instances[instance][1];
