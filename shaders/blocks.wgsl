@@ -13,6 +13,12 @@ fn place_of(group: u32) -> u32 {
     return dispatch.first_block + (group % portion) * dispatch.portions + group / portion;
 }
 
+// What an invocation takes that renders one pixel: the place of its workgroup's block and its own number there; a place
+// behind the last one from turn 1 on.
+fn own_work(group: u32, turn: u32, lane: u32) -> vec2<u32> {
+    return vec2<u32>(select(dispatch.first_block + dispatch.block_count, place_of(group), turn == 0u), lane);
+}
+
 // Column and row of the block at a place, counted in blocks from the band's upper left corner.
 fn block_at(place: u32) -> vec2<u32> {
     let tile_size = BLOCK_EDGE * TILE_EDGE;

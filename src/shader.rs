@@ -71,14 +71,16 @@ const PAIRS: &[Part<'static>] = parts!["memory/pairs/buffers.wgsl" "memory/pairs
 /// Likewise, together with [`PAIRS`].
 const SHARED: &[Part<'static>] = parts!["memory/shared/nodes.wgsl" "memory/shared/lane.wgsl" "memory/shared/work.wgsl"];
 
-/// How a kernel reaches what it reads and writes most: nodes, instances, triangles, and the stack of the traversal.
+/// How a kernel reaches what it reads and writes most (nodes, instances, triangles, the stack of the traversal), and its
+/// next pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemoryAccess {
     /// By words of 32 bits, as core WebGPU has them (`shaders/memory/words`).
     Words,
     /// By integers of 64 bits, where the device has them (`shaders/memory/pairs`).
     Pairs,
-    /// As by pairs, but what the lanes of a subgroup read together is loaded by one of them (`shaders/memory/shared`).
+    /// As by pairs, but a node that lanes of a subgroup visit together is loaded by one of them, and subgroups take
+    /// pixels as they come (`shaders/memory/shared`).
     SharedPairs,
 }
 

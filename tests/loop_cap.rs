@@ -140,6 +140,55 @@ fn a_bound_that_never_goes_away_is_an_error() {
     assert!(error.to_string().contains("loop turns"), "{error}");
 }
 
+/// Where the bound goes away once invocations have one pixel, passes stay as they were, and rays count once.
+#[test]
+fn a_bound_that_goes_away_with_one_pixel_an_invocation_costs_a_repetition() {
+    use gpu_trace::film::Film;
+    use gpu_trace::flatten::SceneBuffers;
+    use gpu_trace::layout::{Dispatch, Frame};
+    use gpu_trace::renderer::{Renderer, Tally};
+
+    struct BoundedWhileTaking {
+        takes: bool,
+        submits: u64,
+        bands: u32,
+    }
+    impl Renderer for BoundedWhileTaking {
+        fn prepare(&mut self, _: Arc<SceneBuffers>) -> gpu_trace::Result<()> {
+            Ok(())
+        }
+        fn max_band_pixels(&self) -> u64 {
+            u64::MAX
+        }
+        fn begin_band(&mut self, _: std::ops::Range<u32>) -> gpu_trace::Result<()> {
+            self.submits = 0;
+            self.bands += 1;
+            Ok(())
+        }
+        fn submit(&mut self, _: &Frame, dispatches: &[Dispatch]) -> gpu_trace::Result<Tally> {
+            assert!(dispatches.iter().all(|dispatch| dispatch.takes_work == u32::from(self.takes)));
+            self.submits += 1;
+            let flags = if self.takes { STATUS_LOOP_BOUND } else { 0 };
+            Ok(Tally { flags, rays: [1, 0, 0, 0] })
+        }
+        fn end_band(&mut self, _: &mut Film) -> gpu_trace::Result<()> {
+            Ok(())
+        }
+        fn takes_work(&self) -> bool {
+            self.takes
+        }
+        fn stop_taking_work(&mut self) {
+            self.takes = false;
+        }
+    }
+    let buffers = Arc::new(flatten(&heavy_stage(3, 7).finish()).unwrap_or_else(|error| panic!("{error}")));
+    let options = RenderOptions::whole(&buffers);
+    let mut renderer = BoundedWhileTaking { takes: true, submits: 0, bands: 0 };
+    let rendered = render(buffers, &mut renderer, &options, &mut Unattended).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((renderer.takes, renderer.bands, rendered.passes), (false, 2, 1));
+    assert_eq!(rendered.tally, Tally { flags: 0, rays: [renderer.submits, 0, 0, 0] });
+}
+
 /// The ordinary budget, on the same scene: the passes are planned so that nothing has to be repeated.
 #[test]
 fn work_within_the_budget_is_not_repeated() {

@@ -15,6 +15,7 @@ use gpu_trace::cpu::geometry::bvh::scene_intersect;
 use gpu_trace::cpu::geometry::triangle::triangle_geometric_normal;
 use gpu_trace::cpu::ray::T_INFINITY;
 use gpu_trace::flatten::{SceneBuffers, flatten};
+use gpu_trace::gpu::probe::loop_cap;
 use gpu_trace::gpu::{Device, DeviceSelector, GpuOptions, GpuRenderer};
 use gpu_trace::layout::Dispatch;
 use gpu_trace::renderer::{Renderer, Tally};
@@ -113,6 +114,7 @@ struct Gpu {
     name: String,
     renderer: GpuRenderer,
     buffers: Arc<SceneBuffers>,
+    takes_work: bool,
 }
 
 impl Gpu {
@@ -121,10 +123,13 @@ impl Gpu {
         let device = Device::open(&DeviceSelector::Any)?;
         let program = Program::renderer(device.memory_access(), &[walk])?;
         let name = format!("{} ({})", device.description().name, device.description().driver);
+        // The kernel doesn't notice loops that are cut short, as `render` does.
+        let cuts_loops = loop_cap(&device)?.turns().is_some();
         let mut renderer = GpuRenderer::with_program(device, GpuOptions { checked: false }, program, "walk");
         renderer.prepare(buffers.clone())?;
         renderer.begin_band(0..EDGE)?;
-        Ok(Gpu { name, renderer, buffers })
+        let takes_work = renderer.takes_work() && !cuts_loops;
+        Ok(Gpu { name, renderer, buffers, takes_work })
     }
 
     fn trace(&mut self) -> Result<Traced> {
@@ -139,7 +144,7 @@ impl Gpu {
                 block_count,
                 tile_stride: order.stride(),
                 portions: self.renderer.portions(),
-                takes_work: u32::from(self.renderer.takes_work()),
+                takes_work: u32::from(self.takes_work),
                 ..Dispatch::default()
             };
             let tally = self.renderer.submit(&self.buffers.frame, &[dispatch])?;

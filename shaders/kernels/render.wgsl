@@ -4,6 +4,7 @@
 fn render(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
     claim_lane(lane);
     tally = Tally(0u, vec4<u32>(0u));
+    // Bounded by the pixels of the dispatch, each of which is taken once.
     for (var turn = 0u; ; turn++) {
         let work = take_work(group.x, turn, lane);
         if (work.x >= dispatch.first_block + dispatch.block_count) {

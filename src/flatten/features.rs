@@ -5,7 +5,8 @@ use crate::layout;
 
 /// Up to so many lights are told apart by constants: as many as `light_at` in `shaders/shading/light.wgsl` lists.
 const FEW_LIGHTS: usize = 4;
-/// Among up to so many instances of meshes, neighbouring rays mostly visit the same nodes.
+/// Among up to so many instances of meshes, each part of an opened one (`rebraid.rs`) for itself, neighbouring rays
+/// mostly visit the same nodes.
 const FEW_MESHES: usize = 64;
 
 /// One field for each `override` constant of `shaders/bindings.wgsl`.

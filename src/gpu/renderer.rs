@@ -34,6 +34,7 @@ pub struct GpuRenderer {
     /// By what they are specialised to; they differ in nothing else.
     pipelines: HashMap<FeatureSet, Pipeline>,
     session: Option<Session>,
+    /// See [`Renderer::takes_work`].
     takes_work: bool,
     warmup_seconds: f64,
     counts: PrepareCounts,
@@ -50,8 +51,8 @@ impl GpuRenderer {
     }
 
     /// A renderer with another kernel, which has to use the bindings of `shaders/bindings.wgsl` and workgroups of 64
-    /// in one dimension, to do nothing where `workgroup_id.x >= dispatch.block_count`, and to call `claim_lane` before
-    /// it traces rays.
+    /// in one dimension, to do nothing where `workgroup_id.x >= dispatch.block_count` or else to ask `take_work` until
+    /// nothing is left, and to call `claim_lane` before it traces rays.
     pub fn with_program(device: Device, options: GpuOptions, program: Program, entry_point: &str) -> Self {
         let entry_point = entry_point.to_owned();
         let takes_work = device.memory_access() == MemoryAccess::SharedPairs;

@@ -4,7 +4,7 @@ struct Lane {
     @builtin(local_invocation_index) index: u32,
     // Its number in the subgroup, whose lanes run together.
     @builtin(subgroup_invocation_id) in_subgroup: u32,
-    // A power of two, at most the size of a workgroup.
+    // Lanes of a subgroup, a power of two.
     @builtin(subgroup_size) subgroup_size: u32,
 };
 

@@ -6,13 +6,14 @@
 // asks until nothing is left, the first time with turn 0.
 fn take_work(group: u32, turn: u32, lane: Lane) -> vec2<u32> {
     if dispatch.takes_work == 0u {
-        return vec2<u32>(select(dispatch.first_block + dispatch.block_count, place_of(group), turn == 0u), lane.index);
+        return own_work(group, turn, lane.index);
     }
     var taken = 0u;
     if lane.in_subgroup == subgroupBroadcastFirst(lane.in_subgroup) {
         taken = atomicAdd(&status.taken, 1u);
     }
-    let pixel = subgroupBroadcastFirst(taken) * lane.subgroup_size;
     let pixels = BLOCK_EDGE * BLOCK_EDGE;
+    // A larger subgroup has no more lanes than the workgroup.
+    let pixel = subgroupBroadcastFirst(taken) * min(lane.subgroup_size, pixels);
     return vec2<u32>(dispatch.first_block + pixel / pixels, pixel % pixels + lane.in_subgroup);
 }

@@ -1,5 +1,5 @@
-// The buffers that rays read most, word by word, as types.wgsl declares them. A file of this name in memory/pairs or
-// memory/shared has the same functions; `MemoryAccess` in src/shader.rs says which of them a device is given.
+// The buffers that rays read most, word by word, as types.wgsl declares them. The files in memory/pairs and memory/shared
+// have the functions of those of their names here; `MemoryAccess` in src/shader.rs says which of them a device is given.
 @group(0) @binding(2) var<storage, read> nodes: array<Node>;
 @group(0) @binding(3) var<storage, read> instances: array<Instance>;
 @group(0) @binding(4) var<storage, read> triangles: array<Triangle>;

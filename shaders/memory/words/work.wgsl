@@ -3,5 +3,5 @@
 // The place of a block, one behind the last when nothing is left to do, and the number of a pixel in it. Each kernel
 // asks until nothing is left, the first time with turn 0.
 fn take_work(group: u32, turn: u32, lane: Lane) -> vec2<u32> {
-    return vec2<u32>(select(dispatch.first_block + dispatch.block_count, place_of(group), turn == 0u), lane.index);
+    return own_work(group, turn, lane.index);
 }
