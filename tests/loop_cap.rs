@@ -108,6 +108,24 @@ fn the_driver_is_known_by_its_loop_cap() {
     }
 }
 
+/// Invocations that take pixel after pixel would only lose what they rendered where loops are cut short.
+#[test]
+fn drivers_that_cut_loops_short_are_known_before_the_first_pixel() {
+    use gpu_trace::gpu::probe::loop_cap;
+    use gpu_trace::gpu::{Device, DeviceSelector, GpuOptions, GpuRenderer};
+    use gpu_trace::renderer::Renderer;
+    use gpu_trace::shader::MemoryAccess;
+
+    let device = Device::open(&DeviceSelector::Any).unwrap_or_else(|error| panic!("{error}"));
+    let is_capped = loop_cap(&device).unwrap_or_else(|error| panic!("{error}")).turns().is_some();
+    let may_take = device.memory_access() == MemoryAccess::SharedPairs;
+    let mut renderer = GpuRenderer::new(device, GpuOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(renderer.takes_work(), may_take);
+    let buffers = Arc::new(flatten(&heavy_stage(1, 1).finish()).unwrap_or_else(|error| panic!("{error}")));
+    renderer.prepare(buffers).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(renderer.takes_work(), may_take && !is_capped);
+}
+
 /// A renderer that reports the bound whatever is asked of it ends in an error, not in a picture.
 #[test]
 fn a_bound_that_never_goes_away_is_an_error() {

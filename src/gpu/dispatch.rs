@@ -7,7 +7,7 @@ use super::readback;
 use crate::blocks::BlockOrder;
 use crate::film::Film;
 use crate::flatten::SceneBuffers;
-use crate::layout::{self, Dispatch, FilmPixel, Frame, Status};
+use crate::layout::{self, Dispatch, FilmPixel, Frame, STATUS_LOOP_BOUND, Status};
 use crate::renderer::{PrepareCounts, Tally};
 use crate::{Error, Result};
 use glam::UVec2;
@@ -18,6 +18,9 @@ use std::sync::Arc;
 
 /// Bytes from one `Dispatch` to the next: dynamic offsets are multiples of what WebGPU guarantees to be enough.
 const SLOT: u64 = 256;
+
+/// More turns than an invocation gets from a driver that cuts loops short (Mesa before 23: 65,535).
+const LONG_LOOP_TURNS: u32 = 100_000;
 
 /// A scene that was uploaded, with the kernel that was specialised to it.
 pub(super) struct Session {
@@ -85,9 +88,11 @@ impl Session {
         })
     }
 
-    /// Runs the kernel without work: lavapipe and others compile at the first dispatch, not before.
-    pub fn warm_up(&mut self, frame: &Frame) -> Result<()> {
-        self.run(frame, &[(Dispatch { portions: 1, ..Dispatch::default() }, 1)]).map(|_| ())
+    /// Runs the kernel without work: lavapipe and others compile at the first dispatch, not before. Returns whether the
+    /// kernel's loops run to their ends, however long they are.
+    pub fn warm_up(&mut self, frame: &Frame) -> Result<bool> {
+        let dispatch = Dispatch { portions: 1, canary_turns: LONG_LOOP_TURNS, ..Dispatch::default() };
+        Ok(self.run(frame, &[(dispatch, 1)])?.flags & STATUS_LOOP_BOUND == 0)
     }
 
     /// Takes these rows of the picture in hand, with every sum 0.

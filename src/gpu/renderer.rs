@@ -113,8 +113,9 @@ impl Renderer for GpuRenderer {
         let frame = scene.frame;
         let mut session = Session::new(&self.device, pipeline, scene, before, &mut self.counts)?;
         let start = Instant::now();
-        if is_new {
-            session.warm_up(&frame)?;
+        if is_new && !session.warm_up(&frame)? && self.takes_work {
+            self.takes_work = false;
+            log::info!("the driver cuts long loops short: an invocation renders one pixel");
         }
         self.warmup_seconds = (compiled + start.elapsed()).as_secs_f64();
         self.session = Some(session);
