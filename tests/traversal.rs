@@ -170,7 +170,7 @@ fn large_and_small_and_far_scenes_are_too() {
 #[test]
 fn meshes_of_thousands_of_triangles_are_too() {
     // In a crowd they are entered below their roots, by themselves at these.
-    for (distance, in_parts) in [(2.5, true), (25.0, false)] {
+    for (distance, in_parts) in [(2.0, true), (25.0, false)] {
         let mut random = Random(13);
         let ball = Arc::new(bumpy_ball(40));
         let place = |i: u32| {

@@ -18,11 +18,6 @@ impl Bounds {
         Bounds { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// The box around both.
-    pub fn union(self, other: Self) -> Self {
-        Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
-    }
-
     /// The box around this one after a map.
     pub fn transformed(self, map: &DAffine3) -> Self {
         let centre = map.transform_point3((self.min + self.max) * 0.5);

@@ -3,6 +3,7 @@
 use super::bounds::Bounds;
 use super::bvh::{self, Hierarchy};
 use super::cache::FlattenCache;
+use super::support::Support;
 use super::walk::Placement;
 use crate::layout::{TRIANGLE_SMOOTH, Triangle};
 use crate::scene::{Mesh, Shape};
@@ -12,7 +13,7 @@ use obvhs::aabb::Aabb;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A mesh ready for the buffers.
 #[derive(Debug)]
@@ -22,21 +23,30 @@ pub struct BuiltMesh {
     pub hierarchy: Hierarchy,
     /// In object space.
     pub bounds: Bounds,
-    /// Boxes that hold the mesh together, at most [`MAX_PARTS`]: turned with an instance and then enclosed, they leave
-    /// less empty space than `bounds` would, and fewer rays enter the instance in vain.
-    parts: Vec<Bounds>,
     /// The children of the hierarchy's root; none where some of these are leaves.
     pub children: Vec<RootChild>,
     /// Least texture coordinates and their extent.
     pub uv_rectangle: Vec4,
     /// Triangles without an area, left out.
     pub degenerate: usize,
+    /// Found out once an instance is turned.
+    support: OnceLock<Support>,
 }
 
 impl BuiltMesh {
-    /// The box around the mesh in another space.
+    /// The box around the mesh, which has triangles, in another space.
     pub fn bounds_in(&self, map: &DAffine3) -> Bounds {
-        around(&self.parts, map)
+        let columns = map.matrix3.to_cols_array_2d();
+        let is_turned = columns.iter().any(|column| column.iter().filter(|component| **component != 0.0).count() > 1);
+        if !is_turned {
+            return self.bounds.transformed(map);
+        }
+        self.support.get_or_init(|| Support::of(&self.triangles)).bounds_in(map)
+    }
+
+    /// The box around what one of its root's children leads to in another space.
+    pub fn child_bounds_in(&self, child: &RootChild, map: &DAffine3) -> Bounds {
+        child.support.get_or_init(|| Support::of(&self.triangles[child.triangles.clone()])).bounds_in(map)
     }
 }
 
@@ -44,19 +54,10 @@ impl BuiltMesh {
 #[derive(Debug)]
 pub struct RootChild {
     pub node: u32,
-    /// As those of the mesh.
-    parts: Vec<Bounds>,
-}
-
-impl RootChild {
-    /// The box around what the node leads to in another space.
-    pub fn bounds_in(&self, map: &DAffine3) -> Bounds {
-        around(&self.parts, map)
-    }
-}
-
-fn around(parts: &[Bounds], map: &DAffine3) -> Bounds {
-    parts.iter().map(|part| part.transformed(map)).fold(Bounds::EMPTY, Bounds::union)
+    /// What it leads to.
+    triangles: Range<usize>,
+    /// Found out once an instance is opened.
+    support: OnceLock<Support>,
 }
 
 /// The different meshes of a scene, in the order of their first use.
@@ -102,12 +103,6 @@ const MIN_EDGE: f32 = 1e-18;
 /// Triangles that one task takes on: whatever is summed up is so in these portions, however many threads there are.
 const PORTION: usize = 4096;
 
-/// Runs of triangles, neighbours in the hierarchy, that get a box each.
-const MAX_PARTS: usize = 64;
-
-/// Likewise below each of a root's children, of which there are up to eight.
-const MAX_CHILD_PARTS: usize = MAX_PARTS / 8;
-
 fn build(mesh: &Mesh) -> Result<BuiltMesh> {
     check(mesh)?;
     let corners: Vec<[u32; 3]> = mesh
@@ -127,24 +122,17 @@ fn build(mesh: &Mesh) -> Result<BuiltMesh> {
         .collect();
     // The collapse of the hierarchy is the work of one thread, which leaves the others free.
     let (hierarchy, vertices) = rayon::join(|| bvh::over_triangles(&boxes), || PackedVertices::of(mesh));
-    let parts = |order: &[u32], most: usize| {
-        let runs = order.chunks(order.len().div_ceil(most).max(1));
-        runs.map(|run| enclose(run.iter().map(|&i| &boxes[i as usize]))).collect()
-    };
-    let child = |(node, members): (u32, Range<usize>)| RootChild {
-        node,
-        parts: parts(&hierarchy.order[members], MAX_CHILD_PARTS),
-    };
+    let child = |(node, triangles)| RootChild { node, triangles, support: OnceLock::new() };
     let children = hierarchy.root_children().into_iter().map(child).collect();
     let pack = |&i: &u32| vertices.triangle(mesh, corners[i as usize]);
     Ok(BuiltMesh {
-        parts: parts(&hierarchy.order, MAX_PARTS),
         children,
         triangles: hierarchy.order.par_iter().with_min_len(PORTION).map(pack).collect(),
         degenerate: mesh.triangles.len() - corners.len(),
         bounds: enclose(boxes.iter()),
         uv_rectangle: vertices.uv_rectangle(),
         hierarchy,
+        support: OnceLock::new(),
     })
 }
 

@@ -13,6 +13,7 @@ mod materials;
 mod mesh;
 mod mist;
 mod rebraid;
+mod support;
 mod walk;
 mod work;
 

@@ -44,13 +44,13 @@ pub fn open(members: Vec<Member>, meshes: &Meshes) -> Vec<Member> {
         if !is_opened {
             return vec![member];
         }
-        let children = &built[member.instance.root as usize].children;
+        let mesh = &built[member.instance.root as usize];
         let part = |child: &RootChild| Member {
-            bounds: child.bounds_in(&member.world_from_object).padded(),
+            bounds: mesh.child_bounds_in(child, &member.world_from_object).padded(),
             entry: child.node,
             ..member
         };
-        children.iter().map(part).collect()
+        mesh.children.iter().map(part).collect()
     };
     members.into_par_iter().zip(is_opened).flat_map_iter(parts).collect()
 }
