@@ -54,7 +54,7 @@ impl BuiltMesh {
 #[derive(Debug)]
 pub struct RootChild {
     pub node: u32,
-    /// What it leads to.
+    /// What it leads to, by places in the mesh's triangles.
     triangles: Range<usize>,
     /// Found out once an instance is opened.
     support: OnceLock<Support>,

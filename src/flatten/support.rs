@@ -20,10 +20,10 @@ const CELLS: usize = (WIDTH * WIDTH) as usize;
 /// what is known already.
 const RUN: usize = 16;
 
-/// How far a set of points reaches, in its own space.
+/// How far a set of points reaches, in object space.
 #[derive(Debug)]
 pub struct Support {
-    /// For each direction of [`direction`].
+    /// The greatest d · p of the points p, for the [`direction`] d of each cell, row by row.
     reach: Box<[f64; CELLS]>,
 }
 
